@@ -39,7 +39,7 @@ pub trait System<T: Real, const N: usize, const M: usize, const P: usize> {
     type Conditioning: AsRef<[T]> + Copy;
 
     /// [`Room<K>`](crate::Room) for thresholds at which a motion stays at once, in a system that tells of the
-    /// [`courses`](Self::courses) of K arguments, and of 32 if there are more; `Room<0>` in one that tells of none, which runs do not ask
+    /// [`courses`](Self::courses) of K arguments, and of 64 if there are more; `Room<0>` in one that tells of none, which runs do not ask
     /// then.
     type Room: Rooms;
 

@@ -14,7 +14,7 @@ use crate::program::Step;
 use crate::symbolic::Symbol;
 
 /// A run has room for so many thresholds at which a motion stays, at most.
-const MOST: usize = 32;
+const MOST: usize = 64;
 
 /// The type, its constructor and its behaviour.
 pub(super) fn items(compiled: &Compiled) -> Items {

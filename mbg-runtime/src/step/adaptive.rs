@@ -14,7 +14,7 @@ use super::over::Place;
 use super::pace::Pace;
 use super::probes::PARTS;
 use super::problem::Problem;
-use super::slide::{Ends, Walk, Walked};
+use super::slide::{Ends, Walk, Walked, WalkedOf};
 use super::thresholds::Point;
 use super::tolerance::Tolerance;
 use super::watch::Watch;
@@ -72,7 +72,7 @@ use crate::{Input, Real, System};
 /// Where a law jumps so that the motion leads back to the threshold from both sides, it stays there: dry friction that holds a load, a
 /// clutch whose sides turn together, a controller that switches its force. From there on the state goes along the threshold, by the
 /// mean of the derivatives at both sides that does not leave it (Filippov, *Differential Equations with Discontinuous Righthand
-/// Sides*, Kluwer 1988, §4), or along up to 32 thresholds at once, by the share of each in the mean (Utkin, *Sliding Modes in
+/// Sides*, Kluwer 1988, §4), or along up to 64 thresholds at once, by the share of each in the mean (Utkin, *Sliding Modes in
 /// Control and Optimization*, Springer 1992, §2). At which of several thresholds it stays is a linear complementarity problem
 /// (Murty, *Linear Complementarity*, Heldermann 1988): it may leave one where it meets another, and arguments may depend on each
 /// other, as slips of clutches in a ring do. Steps end where a share is used up, as where a force tears a load loose.
@@ -214,7 +214,7 @@ impl<Scheme: Estimating, T: Real, const N: usize> Walk<T, N> for Adaptive<'_, Sc
         ((start, mut x), end): (Place<T, N>, T),
         ends: impl Ends<T, S, I, N, M, P>,
         observer: &mut impl FnMut(&mut Step<'_, T, N, S::Memory>) -> ControlFlow<()>,
-    ) -> Result<Walked<T, N>, Stopped>
+    ) -> Result<WalkedOf<T, S, N, M, P>, Stopped>
     where
         S: System<T, N, M, P>,
         I: Input<T, M> + ?Sized,

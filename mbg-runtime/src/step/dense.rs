@@ -4,7 +4,7 @@ use nalgebra::SVector;
 
 use super::method::Span;
 use super::seen;
-use super::surfaces::Surfaces;
+use super::surfaces::Surface;
 use crate::Real;
 
 /// The highest degree of a polynomial over a step.
@@ -211,7 +211,7 @@ pub struct Step<'a, T, const N: usize, Memory = ()> {
     pub(super) state: SVector<T, N>,
     memory: Memory,
     /// The thresholds at which the motion stays.
-    pub(super) surfaces: Option<Surfaces<T>>,
+    pub(super) surfaces: Option<&'a [Surface<T>]>,
     /// Whether it is known to go over none.
     pub(super) is_clear: bool,
     /// Whether it is a straight line over a threshold, behind which the motion may stay at others.
@@ -316,6 +316,20 @@ impl<'a, T: Real, const N: usize, Memory: Copy> Step<'a, T, N, Memory> {
             *part = source(seen(place));
         }
         part.at(place)
+    }
+
+    /// Shows an observer that the motion stays at some thresholds over it.
+    pub(super) fn along<Seen>(
+        &mut self,
+        surfaces: &[Surface<T>],
+        observer: impl FnOnce(&mut Step<'_, T, N, Memory>) -> Seen,
+    ) -> Seen {
+        observer(&mut Step {
+            surfaces: Some(surfaces),
+            part: self.part.take(),
+            source: &mut *self.source,
+            ..*self
+        })
     }
 
     /// Leaves the part of the step up to a time in it, with the state there. Its length stays that of the polynomial, which is

@@ -11,7 +11,7 @@ use super::over::Place;
 use super::problem::Problem;
 use super::slide::{Nowhere, Walked};
 use super::sliding::Rooms;
-use super::surfaces::Surfaces;
+use super::surfaces::{AnySurfaces, Surface};
 use super::{Cause, Statistics, Stopped, check_result, check_times, less, piece_end, seen};
 use crate::{Input, Real, System};
 
@@ -380,7 +380,7 @@ fn sample<D, T, S, I, const N: usize, const M: usize, const P: usize>(
     input: &I,
     (t0, times): (T, &[T]),
     x0: SVector<T, N>,
-    mut observer: impl FnMut(T, &SVector<T, N>, (S::Memory, Option<Surfaces<T>>)),
+    mut observer: impl FnMut(T, &SVector<T, N>, (S::Memory, Option<&[Surface<T>]>)),
 ) -> Result<Statistics, Stopped>
 where
     D: Integrator<N> + ?Sized,
@@ -402,6 +402,7 @@ where
     while let [time, others @ ..] = rest
         && is_start(*time)
     {
+        let surfaces = surfaces.as_ref().map(AnySurfaces::as_slice);
         observer(*time, &x, (problem.memory, surfaces));
         rest = others;
     }

@@ -7,7 +7,7 @@ use nalgebra::SVector;
 use super::dense::Step;
 use super::over::{Place, SOON};
 use super::problem::Problem;
-use super::slide::{Ends, Walked};
+use super::slide::{Ends, Walked, WalkedOf};
 use super::tolerance::{NOISE, Sizes};
 use super::{Stopped, less, seen};
 use crate::lane::lane;
@@ -108,7 +108,7 @@ pub(super) fn walk_over_jumps<R, T, S, I, const N: usize, const M: usize, const 
     (here, end): (Place<T, N>, T),
     ends: impl Ends<T, S, I, N, M, P>,
     observer: &mut impl FnMut(&mut Step<'_, T, N, S::Memory>) -> ControlFlow<()>,
-) -> Result<Walked<T, N>, Stopped>
+) -> Result<WalkedOf<T, S, N, M, P>, Stopped>
 where
     R: Runs<T, N>,
     T: Real,

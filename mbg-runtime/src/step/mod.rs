@@ -115,7 +115,7 @@ pub enum Cause {
     /// More steps than [`Adaptive::most`] or [`Auto::most`] allows, which a run over many jumps of an input may well need.
     ///
     /// Where the next step is short for another reason, an explicit method meets a stiff model, or a law jumps again and again, ever
-    /// sooner, as a relay does that a place switches and not a rate. So it is with more than 32 thresholds at which the motion
+    /// sooner, as a relay does that a place switches and not a rate. So it is with more than 64 thresholds at which the motion
     /// stays at once, and with one in a batch. Let such a law rise over a small width, as `tanh(v / width)` does.
     TooManySteps {
         /// The length that the next step would have, s.

@@ -12,7 +12,7 @@ use super::jumps::{Counted, Jump, Ran, Runs, walk_over_jumps};
 use super::method::{Method, Start, Stepper};
 use super::over::{Place, straight};
 use super::problem::Problem;
-use super::slide::{Ends, Walk, Walked, WhereALaneStays};
+use super::slide::{Ends, Walk, Walked, WalkedOf, WhereALaneStays};
 use super::thresholds::Point;
 use super::{Cause, Stopped, check_result, less, seen};
 use crate::course::{FARTHER, sooner};
@@ -55,7 +55,7 @@ impl<Scheme: Method, T: Real, const N: usize> Walk<T, N> for OnGrid<'_, Scheme, 
         (here, end): (Place<T, N>, T),
         ends: impl Ends<T, S, I, N, M, P>,
         observer: &mut impl FnMut(&mut Step<'_, T, N, S::Memory>) -> ControlFlow<()>,
-    ) -> Result<Walked<T, N>, Stopped>
+    ) -> Result<WalkedOf<T, S, N, M, P>, Stopped>
     where
         S: System<T, N, M, P>,
         I: Input<T, M> + ?Sized,
@@ -78,7 +78,7 @@ impl<Scheme: Method, T: Real> OnGrid<'_, Scheme, T> {
         problem: &mut Problem<'_, T, S, I, N, M, P>,
         place_and_end: (Place<T, N>, T),
         observer: &mut impl FnMut(&mut Step<'_, T, N, S::Memory>) -> ControlFlow<()>,
-    ) -> Result<Walked<T, N>, Stopped>
+    ) -> Result<WalkedOf<T, S, N, M, P>, Stopped>
     where
         S: System<T, N, M, P>,
         I: Input<T, M> + ?Sized,
@@ -99,7 +99,7 @@ impl<Scheme: Method, T: Real> OnGrid<'_, Scheme, T> {
         problem: &mut Problem<'_, T, S, I, N, M, P>,
         (mut here, end): (Place<T, N>, T),
         observer: &mut impl FnMut(&mut Step<'_, T, N, S::Memory>) -> ControlFlow<()>,
-    ) -> Result<Walked<T, N>, Stopped>
+    ) -> Result<WalkedOf<T, S, N, M, P>, Stopped>
     where
         S: System<T, N, M, P>,
         I: Input<T, M> + ?Sized,

@@ -9,22 +9,26 @@ use super::event::Direction;
 use super::method::Span;
 use super::over::Place;
 use super::problem::Problem;
-use super::sliding::{Rooms, Sliding};
-use super::surfaces::{Surfaces, is_later};
+use super::sliding::{Room, Rooms, Sliding};
+use super::surfaces::{AnySurfaces, Surfaces, SurfacesOf, is_later};
 use super::thresholds::Point;
 use super::tolerance::Tolerance;
 use super::{Cause, Stopped, less, seen};
 use crate::{Input, Real, System};
 
 /// How far a run has come.
-pub(super) enum Walked<T, const N: usize> {
+pub(super) enum Walked<T, Surfaces, const N: usize> {
     /// To the end, with the state there.
     Ended(SVector<T, N>),
     /// The observer has broken off.
     Left,
     /// To a place next to thresholds at which the motion may stay.
-    Stays(Place<T, N>, Surfaces<T>),
+    Stays(Place<T, N>, Surfaces),
 }
+
+/// How far one over a system has.
+pub(super) type WalkedOf<T, S, const N: usize, const M: usize, const P: usize> =
+    Walked<T, SurfacesOf<T, S, N, M, P>, N>;
 
 /// At which thresholds a walk ends: at none unless it is told, but for those at which it comes to rest.
 pub(super) trait Ends<T, S, I: ?Sized, const N: usize, const M: usize, const P: usize>:
@@ -47,7 +51,7 @@ where
         self,
         _problem: &mut Problem<'_, T, S, I, N, M, P>,
         _points: [&Point<T, N>; 2],
-    ) -> Option<Surfaces<T>> {
+    ) -> Option<SurfacesOf<T, S, N, M, P>> {
         None
     }
 
@@ -56,7 +60,7 @@ where
         self,
         _problem: &mut Problem<'_, T, S, I, N, M, P>,
         _here: &Point<T, N>,
-    ) -> Option<Surfaces<T>> {
+    ) -> Option<SurfacesOf<T, S, N, M, P>> {
         None
     }
 
@@ -65,7 +69,7 @@ where
         self,
         _problem: &mut Problem<'_, T, S, I, N, M, P>,
         _here: &Point<T, N>,
-    ) -> Option<Surfaces<T>> {
+    ) -> Option<SurfacesOf<T, S, N, M, P>> {
         None
     }
 
@@ -76,7 +80,7 @@ where
         here: &Point<T, N>,
         way: (f64, T, &Tolerance<N>),
         observer: &mut impl FnMut(&mut Step<'_, T, N, S::Memory>) -> ControlFlow<()>,
-    ) -> Result<Option<Walked<T, N>>, Stopped> {
+    ) -> Result<Option<WalkedOf<T, S, N, M, P>>, Stopped> {
         match Self::RESTS {
             true => problem.come_to_rest(here, way, observer),
             false => Ok(None),
@@ -112,18 +116,18 @@ where
         self,
         problem: &mut Problem<'_, T, S, I, N, M, P>,
         [from, to]: [&Point<T, N>; 2],
-    ) -> Option<Surfaces<T>> {
+    ) -> Option<SurfacesOf<T, S, N, M, P>> {
         let passed = problem.met_between(from, to);
-        passed.filter(|passed| problem.stays(to, passed))
+        passed.filter(|passed| problem.stays(to, *passed))
     }
 
     fn at(
         self,
         problem: &mut Problem<'_, T, S, I, N, M, P>,
         here: &Point<T, N>,
-    ) -> Option<Surfaces<T>> {
+    ) -> Option<SurfacesOf<T, S, N, M, P>> {
         let met = problem.next_to(here);
-        met.filter(|met| problem.stays(here, met))
+        met.filter(|met| problem.stays(here, *met))
     }
 }
 
@@ -148,7 +152,7 @@ where
         self,
         problem: &mut Problem<'_, T, S, I, N, M, P>,
         [from, to]: [&Point<T, N>; 2],
-    ) -> Option<Surfaces<T>> {
+    ) -> Option<SurfacesOf<T, S, N, M, P>> {
         problem.between(from, to)
     }
 
@@ -156,7 +160,7 @@ where
         self,
         problem: &mut Problem<'_, T, S, I, N, M, P>,
         here: &Point<T, N>,
-    ) -> Option<Surfaces<T>> {
+    ) -> Option<SurfacesOf<T, S, N, M, P>> {
         problem.next_to(here)
     }
 }
@@ -178,15 +182,16 @@ where
         self,
         problem: &mut Problem<'_, T, S, I, N, M, P>,
         [from, to]: [&Point<T, N>; 2],
-    ) -> Option<Surfaces<T>> {
+    ) -> Option<SurfacesOf<T, S, N, M, P>> {
         let mut is_led_back = false;
         problem.courses(from, to, |course, _| is_led_back |= course.is_led_back());
-        is_led_back.then_some(Surfaces::none())
+        is_led_back.then(AnySurfaces::none)
     }
 }
 
 /// Where a run goes on behind a threshold, with when the next may be met, if it does.
-type Beyond<T, const N: usize> = ControlFlow<Walked<T, N>, (Point<T, N>, f64)>;
+type Beyond<T, S, const N: usize, const M: usize, const P: usize> =
+    ControlFlow<WalkedOf<T, S, N, M, P>, (Point<T, N>, f64)>;
 
 impl<T, S, I, const N: usize, const M: usize, const P: usize> Problem<'_, T, S, I, N, M, P>
 where
@@ -202,7 +207,7 @@ where
         (rest, length, end): (T, f64, T),
         ends: impl Ends<T, S, I, N, M, P>,
         observer: &mut impl FnMut(&mut Step<'_, T, N, S::Memory>) -> ControlFlow<()>,
-    ) -> Result<Beyond<T, N>, Stopped> {
+    ) -> Result<Beyond<T, S, N, M, P>, Stopped> {
         let way = ((here.time, here.state), (rest, &here.slope));
         let over = self.over_threshold(way, (length, end), observer)?;
         let ControlFlow::Continue(((time, state), watched)) = over else {
@@ -229,7 +234,7 @@ where
         here: &Point<T, N>,
         (length, end, tolerance): (f64, T, &Tolerance<N>),
         observer: &mut impl FnMut(&mut Step<'_, T, N, S::Memory>) -> ControlFlow<()>,
-    ) -> Result<Option<Walked<T, N>>, Stopped> {
+    ) -> Result<Option<WalkedOf<T, S, N, M, P>>, Stopped> {
         let near = if S::HAS_COURSES {
             self.ahead(here, length)
         } else {
@@ -245,7 +250,7 @@ where
         );
         let known = (&mut memory, &mut self.statistics.evaluations);
         let measure = tolerance.around(&here.state);
-        let near = (&near, &measure);
+        let near = (near.as_slice(), &measure);
         let Some(rest) = S::Room::rest(model, times, here, near, known) else {
             return Ok(None);
         };
@@ -270,7 +275,7 @@ where
 
     /// Whether the motion stays at some of these thresholds.
     #[cold]
-    fn stays(&mut self, here: &Point<T, N>, surfaces: &Surfaces<T>) -> bool {
+    fn stays(&mut self, here: &Point<T, N>, surfaces: SurfacesOf<T, S, N, M, P>) -> bool {
         let (mut x, mut memory) = (here.state, self.memory);
         let model = (self.system, self.input);
         let times = (self.since, self.inside, self.whole);
@@ -315,7 +320,7 @@ pub(super) trait Walk<T: Real, const N: usize> {
         place_and_end: (Place<T, N>, T),
         ends: impl Ends<T, S, I, N, M, P>,
         observer: &mut impl FnMut(&mut Step<'_, T, N, S::Memory>) -> ControlFlow<()>,
-    ) -> Result<Walked<T, N>, Stopped>
+    ) -> Result<WalkedOf<T, S, N, M, P>, Stopped>
     where
         S: System<T, N, M, P>,
         I: Input<T, M> + ?Sized;
@@ -365,14 +370,13 @@ pub(super) trait Walk<T: Real, const N: usize> {
         &mut self,
         problem: &mut Problem<'_, T, S, I, N, M, P>,
         (mut here, end): (Place<T, N>, T),
-        (surfaces, settled): (Surfaces<T>, &mut Settled<T>),
+        (mut surfaces, settled): (Surfaces<T, K>, &mut Settled<T>),
         observer: &mut impl FnMut(&mut Step<'_, T, N, S::Memory>) -> ControlFlow<()>,
     ) -> Result<ControlFlow<(), Place<T, N>>, Stopped>
     where
-        S: System<T, N, M, P>,
+        S: System<T, N, M, P, Room = Room<K>>,
         I: Input<T, M> + ?Sized,
     {
-        let mut surfaces = Surfaces::<T, K>::none().with(&surfaces);
         while less(here.0, end) {
             settled.again(here.0)?;
             let model = (problem.system, problem.input);
@@ -389,7 +393,7 @@ pub(super) trait Walk<T: Real, const N: usize> {
             let holds = |(t, x): Place<T, N>, memory| less(T::from_f64(0.0), hold(t, &x, memory));
             if !holds(here, memory) {
                 problem.statistics.evaluations += sliding.evaluations.get();
-                surfaces = surfaces.with(&problem.at_start(here).unwrap_or_else(Surfaces::none));
+                surfaces = problem.also_at_start(here, surfaces);
                 continue;
             }
             let (mut along, mut left) = (problem.of(&sliding), None);
@@ -404,9 +408,9 @@ pub(super) trait Walk<T: Real, const N: usize> {
                     step.cut(time, there);
                     left = Some((time, there));
                 }
-                step.surfaces = Some(Surfaces::none().with(&surfaces));
-                let goes_on = observer(step);
-                sliding.heed(seen(step.end() - step.start()));
+                let length = seen(step.end() - step.start());
+                let goes_on = step.along(surfaces.as_slice(), &mut *observer);
+                sliding.heed(length);
                 match goes_on {
                     ControlFlow::Continue(()) if left.is_some() => ControlFlow::Break(()),
                     ControlFlow::Break(()) => {
@@ -422,17 +426,16 @@ pub(super) trait Walk<T: Real, const N: usize> {
             match (walked, left) {
                 (Walked::Ended(x), _) => here = (end, x),
                 (Walked::Stays(place, others), _) => {
-                    let is_news = others.without(&asked).count() > 0;
+                    let is_news = others.without(asked.as_slice()).count() > 0;
                     let goes_on = is_news || less(here.0, place.0);
                     here = place;
-                    surfaces = surfaces.with(&others);
+                    surfaces = surfaces.with(others.as_slice());
                     if !goes_on {
                         break;
                     }
                 }
                 (Walked::Left, Some(place)) => {
-                    surfaces =
-                        surfaces.with(&problem.at_start(place).unwrap_or_else(Surfaces::none));
+                    surfaces = problem.also_at_start(place, surfaces);
                     here = place;
                 }
                 (Walked::Left, None) => return Ok(ControlFlow::Break(())),

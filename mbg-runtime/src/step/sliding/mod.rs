@@ -16,7 +16,7 @@ use each::Each;
 pub use room::{Room, Rooms};
 
 use super::seen;
-use super::surfaces::Surfaces;
+use super::surfaces::{AnySurfaces, Surfaces};
 use crate::{Course, Input, Real, System};
 
 /// The part of a run, and of a step, over which an input is taken to be smooth.
@@ -128,7 +128,7 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'a, T, S
 
     /// All at which the motion stays.
     pub(super) fn all(&self) -> Surfaces<T, K> {
-        self.surfaces.with(&self.twins.0)
+        self.surfaces.with(self.twins.0.as_slice())
     }
 
     /// The state on the surfaces next to one.

@@ -8,7 +8,7 @@ use super::super::dense::Step;
 use super::super::over::Place;
 use super::super::problem::Problem;
 use super::super::slide::{Settled, Walk};
-use super::super::surfaces::Surfaces;
+use super::super::surfaces::{AnySurfaces, Surface, Surfaces};
 use super::super::thresholds::Point;
 use super::super::tolerance::Measure;
 use super::Sliding;
@@ -29,9 +29,13 @@ pub struct Room<const K: usize>;
     private_interfaces,
     reason = "it is not written outside"
 )]
-pub trait Rooms {
+pub trait Rooms: Sized {
     /// For so many.
     const COUNT: usize;
+
+    /// Those thresholds.
+    #[doc(hidden)]
+    type Surfaces<T: Real>: AnySurfaces<T>;
 
     /// Goes on along thresholds.
     #[doc(hidden)]
@@ -39,13 +43,13 @@ pub trait Rooms {
         walk: &mut W,
         problem: &mut Problem<'_, T, S, I, N, M, P>,
         place_and_end: (Place<T, N>, T),
-        known: (Surfaces<T>, &mut Settled<T>),
+        known: (Self::Surfaces<T>, &mut Settled<T>),
         observer: &mut impl FnMut(&mut Step<'_, T, N, S::Memory>) -> ControlFlow<()>,
     ) -> Result<ControlFlow<(), Place<T, N>>, Stopped>
     where
         W: Walk<T, N> + ?Sized,
         T: Real,
-        S: System<T, N, M, P>,
+        S: System<T, N, M, P, Room = Self>,
         I: Input<T, M> + ?Sized;
 
     /// Whether a motion stays at some of these.
@@ -54,12 +58,12 @@ pub trait Rooms {
         model: (&S, &I),
         times: (T, (T, T), f64),
         place: (T, &mut SVector<T, N>),
-        surfaces: &Surfaces<T>,
+        surfaces: Self::Surfaces<T>,
         known: (&mut S::Memory, &mut u64),
     ) -> bool
     where
         T: Real,
-        S: System<T, N, M, P>,
+        S: System<T, N, M, P, Room = Self>,
         I: Input<T, M> + ?Sized;
 
     /// Where it comes to rest at some of these.
@@ -68,12 +72,12 @@ pub trait Rooms {
         model: (&S, &I),
         times: (T, (T, T), f64),
         here: &Point<T, N>,
-        near: (&Surfaces<T>, &Measure<N>),
+        near: (&[Surface<T>], &Measure<N>),
         known: (&mut S::Memory, &mut u64),
-    ) -> Option<Rest<T, N>>
+    ) -> Option<Rest<T, Self::Surfaces<T>, N>>
     where
         T: Real,
-        S: System<T, N, M, P>,
+        S: System<T, N, M, P, Room = Self>,
         I: Input<T, M> + ?Sized;
 
     /// The outputs next to some at which it stays.
@@ -82,11 +86,11 @@ pub trait Rooms {
         model: (&S, &I),
         times: (T, f64),
         x: &SVector<T, N>,
-        known: (Surfaces<T>, &mut S::Memory),
+        known: (&[Surface<T>], &mut S::Memory),
     ) -> SVector<T, P>
     where
         T: Real,
-        S: System<T, N, M, P>,
+        S: System<T, N, M, P, Room = Self>,
         I: Input<T, M> + ?Sized;
 }
 
@@ -98,17 +102,19 @@ pub trait Rooms {
 impl<const K: usize> Rooms for Room<K> {
     const COUNT: usize = K;
 
+    type Surfaces<T: Real> = Surfaces<T, K>;
+
     fn slide<W, T, S, I, const N: usize, const M: usize, const P: usize>(
         walk: &mut W,
         problem: &mut Problem<'_, T, S, I, N, M, P>,
         place_and_end: (Place<T, N>, T),
-        known: (Surfaces<T>, &mut Settled<T>),
+        known: (Self::Surfaces<T>, &mut Settled<T>),
         observer: &mut impl FnMut(&mut Step<'_, T, N, S::Memory>) -> ControlFlow<()>,
     ) -> Result<ControlFlow<(), Place<T, N>>, Stopped>
     where
         W: Walk<T, N> + ?Sized,
         T: Real,
-        S: System<T, N, M, P>,
+        S: System<T, N, M, P, Room = Self>,
         I: Input<T, M> + ?Sized,
     {
         walk.slide::<S, I, M, P, K>(problem, place_and_end, known, observer)
@@ -118,15 +124,14 @@ impl<const K: usize> Rooms for Room<K> {
         model: (&S, &I),
         times: (T, (T, T), f64),
         place: (T, &mut SVector<T, N>),
-        surfaces: &Surfaces<T>,
+        surfaces: Self::Surfaces<T>,
         known: (&mut S::Memory, &mut u64),
     ) -> bool
     where
         T: Real,
-        S: System<T, N, M, P>,
+        S: System<T, N, M, P, Room = Self>,
         I: Input<T, M> + ?Sized,
     {
-        let surfaces = Surfaces::<T, K>::none().with(surfaces);
         Sliding::settled(model, times, place, surfaces, known).is_some()
     }
 
@@ -134,12 +139,12 @@ impl<const K: usize> Rooms for Room<K> {
         model: (&S, &I),
         times: (T, (T, T), f64),
         here: &Point<T, N>,
-        near: (&Surfaces<T>, &Measure<N>),
+        near: (&[Surface<T>], &Measure<N>),
         known: (&mut S::Memory, &mut u64),
-    ) -> Option<Rest<T, N>>
+    ) -> Option<Rest<T, Self::Surfaces<T>, N>>
     where
         T: Real,
-        S: System<T, N, M, P>,
+        S: System<T, N, M, P, Room = Self>,
         I: Input<T, M> + ?Sized,
     {
         Sliding::<_, _, _, N, K>::rest(model, times, here, near, known)
@@ -149,17 +154,17 @@ impl<const K: usize> Rooms for Room<K> {
         (system, input): (&S, &I),
         (t, whole): (T, f64),
         x: &SVector<T, N>,
-        (surfaces, memory): (Surfaces<T>, &mut S::Memory),
+        (surfaces, memory): (&[Surface<T>], &mut S::Memory),
     ) -> SVector<T, P>
     where
         T: Real,
-        S: System<T, N, M, P>,
+        S: System<T, N, M, P, Room = Self>,
         I: Input<T, M> + ?Sized,
     {
         let (mut x, u) = (*x, input.at(t));
         let times = (t, (t, t), whole);
         let known = (&mut *memory, &mut 0);
-        let surfaces = Surfaces::<T, K>::none().with(&surfaces);
+        let surfaces = Surfaces::<T, K>::none().with(surfaces);
         match Sliding::settled((system, input), times, (t, &mut x), surfaces, known) {
             Some(sliding) => sliding.output(t, &x, &u, memory),
             None => system.output(t, &x, &u, memory),

@@ -3,7 +3,7 @@
 use nalgebra::SVector;
 
 use super::super::seen;
-use super::super::surfaces::{Surface, Surfaces};
+use super::super::surfaces::{AnySurfaces, Surface, Surfaces};
 use super::super::thresholds::Point;
 use super::super::tolerance::Measure;
 use super::choice::Choice;
@@ -38,9 +38,9 @@ const ROOT: f64 = 16.0;
 const SLOWER: f64 = 2.0;
 
 /// Where a motion comes to rest.
-pub(in super::super) struct Rest<T, const N: usize> {
+pub(in super::super) struct Rest<T, Surfaces, const N: usize> {
     pub(in super::super) state: SVector<T, N>,
-    pub(in super::super) surfaces: Surfaces<T>,
+    pub(in super::super) surfaces: Surfaces,
     /// How long it takes until then.
     pub(in super::super) ahead: f64,
 }
@@ -89,7 +89,7 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'a, T, S
             Found::Stays => return Some(sliding),
             Found::Leaves => {
                 // What is led almost alike may be met as soon as these are left.
-                let others = surfaces.without(&all);
+                let others = surfaces.without(all.as_slice());
                 let model = (system, input);
                 let (times, known) = ((since, inside, whole), (memory, evaluations));
                 return match others.count() < surfaces.count() && others.count() > 0 {
@@ -119,9 +119,9 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'a, T, S
         model: (&'a S, &'a I),
         times: (T, (T, T), f64),
         here: &Point<T, N>,
-        (surfaces, measure): (&Surfaces<T>, &Measure<N>),
+        (surfaces, measure): (&[Surface<T>], &Measure<N>),
         (memory, evaluations): (&mut S::Memory, &mut u64),
-    ) -> Option<Rest<T, N>>
+    ) -> Option<Rest<T, Surfaces<T, K>, N>>
     where
         S: System<T, N, M, P>,
         I: Input<T, M>,
@@ -132,10 +132,10 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'a, T, S
         let at = sliding.on_piece(here.time);
         let mut near = Surfaces::none();
         let mut ahead = 0.0_f64;
-        for surface in surfaces.iter() {
-            sliding.arrange(Surfaces::one(surface), (&at, x), memory);
+        for surface in surfaces {
+            sliding.arrange(Surfaces::one(*surface), (&at, x), memory);
             if is_near(&sliding.onto(&at, x, memory)) {
-                near.add(surface);
+                near.add(*surface);
                 let [[distances, rates], _] = sliding.told(&at, [(x, &here.slope); 2], memory);
                 let time = seen(distances[0] / rates[0]).abs();
                 ahead = ahead.max(if time.is_finite() { time } else { 0.0 });
@@ -153,7 +153,7 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'a, T, S
         let state = sliding.landed(here.time, &sliding.landed(here.time, x, memory), memory);
         (is_root && is_near(&state)).then(|| Rest {
             state,
-            surfaces: Surfaces::none().with(&sliding.all()),
+            surfaces: sliding.all(),
             ahead: SLOWER * ahead,
         })
     }
@@ -241,7 +241,7 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'a, T, S
         I: Input<T, M>,
     {
         let reach = self.line(at, (x, 1.0), memory).reach;
-        let rest = self.all().without(&Surfaces::<T, K>::one(passed));
+        let rest = self.all().without(&[passed]);
         let mut asides = Each::all(Aside::On);
         if let Some((place, _)) = self.surfaces.of(passed.course) {
             asides[place] = Aside::Passed(0.0);
@@ -346,7 +346,7 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'a, T, S
             units[place] = unit;
         }
         self.free = free.count();
-        self.surfaces = free.with(&bound);
+        self.surfaces = free.with(bound.as_slice());
         for like in likes.iter_mut().take(twins.count()) {
             let leader = surfaces.iter().nth(like.leader);
             let place = leader.and_then(|leader| self.surfaces.of(leader.course));
@@ -427,7 +427,7 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'a, T, S
                 sorted.add(surface);
             }
         }
-        self.arrange(sorted.with(&self.twins.0), (at, x), memory);
+        self.arrange(sorted.with(self.twins.0.as_slice()), (at, x), memory);
         for (share, surface) in self.shares.iter_mut().zip(self.surfaces.iter()) {
             if let Some((place, _)) = before.of(surface.course) {
                 *share = T::from_f64(above[place]);
@@ -451,7 +451,11 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'a, T, S
         let before = self.surfaces;
         let on = self.only(|place| matches!(asides[*place], Aside::On));
         let left = self.only(|place| matches!(asides[*place], Aside::Left(..)));
-        self.arrange(on.with(&left).with(&before), (at, x), memory);
+        self.arrange(
+            on.with(left.as_slice()).with(before.as_slice()),
+            (at, x),
+            memory,
+        );
         let mut sorted = Each::<_, K>::all(Aside::On);
         for (aside, surface) in sorted.iter_mut().zip(self.surfaces.iter()) {
             if let Some((place, _)) = before.of(surface.course) {

@@ -25,16 +25,19 @@ use crate::{Input, Real, Sparsity, System};
 /// | stiff; the relative tolerance is at most 1e-5 | [`Radau9`] |
 /// | stiff, to a larger tolerance; the fastest mode oscillates | [`Radau5`] |
 /// | stiff, to a larger tolerance; the fastest mode decays | [`Rodas5P`] |
-/// | not stiff; the relative tolerance is above 3e-6, or the fastest mode moves less than 20 rad within the piece | [`Tsit5`] |
+/// | not stiff; the relative tolerance is above 1e-4, or the fastest mode moves less than 20 rad within the piece | [`Tsit5`] |
 /// | else | [`Dop853`] |
 ///
 /// The fastest mode is the largest eigenvalue of the exact Jacobian, or the largest pair, found by a fixed number of steps of
 /// the power method; where many modes are about as fast, it is exact within a factor of two. [`Auto::choose`] tells what is picked
 /// and why.
 ///
-/// A problem may become stiff later on. While a method for smooth problems has more than 1000 steps to go, the fastest mode is
-/// looked at after 50 steps, and again whenever a quarter of the steps so far, at least 50, have been added. Where stability keeps
-/// the steps short, the rest of the piece goes on with a method for stiff problems.
+/// What a problem is may change, or be other than the angle tells: a long run of what oscillates slowly goes through a large angle,
+/// and what decays fast within a short one need not be worth following. While many steps are left, the fastest mode is looked at after
+/// 50 steps, and again whenever half of the steps so far, at least 50, have been added. Where steps of a method for smooth problems go
+/// on average through more than 2.5 rad of it, stability keeps them short: the rest of the piece goes on with a method for stiff
+/// problems, if it is more than 1000 rad, and 10 rad more for each state. Where those of a method for stiff problems go through less,
+/// the rest goes on with one for smooth problems.
 ///
 /// # Stack
 ///
@@ -47,7 +50,7 @@ use crate::{Input, Real, Sparsity, System};
 /// | [`ImplicitMidpoint`](crate::ImplicitMidpoint) | 2 | 2.8 MB |
 /// | [`Radau5`] | 4 | 5.5 MB |
 /// | [`Radau9`] | 6 | 8.1 MB |
-/// | `Auto` while a model is not stiff | 1 | 1.4 MB |
+/// | `Auto` | 1, and those of its method | 1.4 MB more |
 ///
 /// Where steps of an implicit method are checked in between, see [`Adaptive`], it takes one more. With their results,
 /// [`Linearised::of`](crate::Linearised::of) takes 7, [`Linearised::held`](crate::Linearised::held) 11, and
@@ -94,6 +97,13 @@ pub enum Picked {
     Rodas5P,
     Radau5,
     Radau9,
+}
+
+impl Picked {
+    /// Whether it is for stiff problems.
+    const fn is_for_stiff(self) -> bool {
+        matches!(self, Self::Rodas5P | Self::Radau5 | Self::Radau9)
+    }
 }
 
 /// Why [`Auto`] picked a method.
@@ -199,16 +209,23 @@ impl Auto<'_> {
             self.stiff(oscillates)
         } else if angle < SHORT {
             (Picked::Tsit5, Reason::ShortPiece)
-        } else if self.relative > MODERATE {
-            (Picked::Tsit5, Reason::Moderate)
         } else {
-            (Picked::Dop853, Reason::Tight)
+            self.smooth()
         };
         Choice {
             method,
             reason,
             fastest,
             horizon,
+        }
+    }
+
+    /// The method for a problem that is not stiff, on a long way.
+    fn smooth(&self) -> (Picked, Reason) {
+        if self.relative > MODERATE {
+            (Picked::Tsit5, Reason::Moderate)
+        } else {
+            (Picked::Dop853, Reason::Tight)
         }
     }
 
@@ -240,7 +257,7 @@ const STIFF_TIGHT: f64 = 1e-5;
 /// An angle within which long steps do not pay.
 const SHORT: f64 = 20.0;
 /// Above this relative tolerance the method of low order pays.
-const MODERATE: f64 = 3e-6;
+const MODERATE: f64 = 1e-4;
 
 #[allow(private_interfaces, reason = "no integrator is written outside")]
 impl<const N: usize> Integrator<N> for Auto<'_> {
@@ -251,7 +268,7 @@ impl<const N: usize> Integrator<N> for Auto<'_> {
     fn piece<T, S, I, const M: usize, const P: usize>(
         &self,
         problem: &mut Problem<'_, T, S, I, N, M, P>,
-        ends: (T, T),
+        (start, end): (T, T),
         x: SVector<T, N>,
         observer: &mut impl FnMut(&mut Step<'_, T, N, S::Memory>) -> ControlFlow<()>,
     ) -> Result<ControlFlow<(), SVector<T, N>>, Stopped>
@@ -260,56 +277,96 @@ impl<const N: usize> Integrator<N> for Auto<'_> {
         S: System<T, N, M, P>,
         I: Input<T, M> + ?Sized,
     {
-        let picked = self.pick(problem, ends, &x).method;
+        let mut method = self.pick(problem, (start, end), &x).method;
         let (system, input, since) = (problem.system, problem.input, problem.since);
-        let mut stiff = None;
-        let (mut steps, mut next) = (0_u64, WATCHED);
-        let mut watch = |step: &mut Step<'_, T, N, S::Memory>| {
-            observer(step)?;
-            steps += 1;
-            let t = step.end();
-            let (length, left) = (seen(t - step.start()), seen(ends.1 - t));
-            if steps < next || left < FEW * length {
-                return ControlFlow::Continue(());
-            }
-            next = steps + WATCHED.max(steps / 4);
-            let x = *step.state();
-            let u = input.value(t, since);
-            let (fastest, oscillates) = fastest_at(system, t, &x, &u, step.memory());
-            if fastest * length > UNSTABLE && fastest * left > STIFF {
-                stiff = Some((t, x, oscillates));
-                return ControlFlow::Break(());
-            }
-            ControlFlow::Continue(())
-        };
-        let ended = match picked {
-            Picked::Tsit5 => self.with(Tsit5).piece(problem, ends, x, &mut watch),
-            Picked::Dop853 => self.with(Dop853).piece(problem, ends, x, &mut watch),
-            Picked::Rodas5P => return self.with(Rodas5P).piece(problem, ends, x, observer),
-            Picked::Radau5 => return self.with(Radau5).piece(problem, ends, x, observer),
-            Picked::Radau9 => return self.with(Radau9).piece(problem, ends, x, observer),
-        };
-        let Some((t, x, oscillates)) = stiff else {
-            return ended;
-        };
-        let ends = (t, ends.1);
-        match self.stiff(oscillates).0 {
-            Picked::Radau9 => self.with(Radau9).piece(problem, ends, x, observer),
-            Picked::Radau5 => self.with(Radau5).piece(problem, ends, x, observer),
-            _ => self.with(Rodas5P).piece(problem, ends, x, observer),
+        let mut looks = Looks::from(seen(start));
+        let mut here = (start, x);
+        loop {
+            let (ends, x) = ((here.0, end), here.1);
+            let mut other = None;
+            let mut watch = |step: &mut Step<'_, T, N, S::Memory>| {
+                observer(step)?;
+                let t = step.end();
+                let Some(length) = looks.after_step(seen(t), seen(end)) else {
+                    return ControlFlow::Continue(());
+                };
+                here = (t, *step.state());
+                let u = input.value(t, since);
+                let (fastest, oscillates) = fastest_at(system, t, &here.1, &u, step.memory());
+                let is_followed = fastest * length < FOLLOWED;
+                let pays = fastest * seen(end - t) > PAYS + N as f64 * STATE;
+                other = match (method.is_for_stiff(), is_followed) {
+                    (true, true) => Some(self.smooth().0),
+                    (false, false) if pays => Some(self.stiff(oscillates).0),
+                    _ => return ControlFlow::Continue(()),
+                };
+                ControlFlow::Break(())
+            };
+            let ended = match method {
+                Picked::Tsit5 => self.with(Tsit5).piece(problem, ends, x, &mut watch),
+                Picked::Dop853 => self.with(Dop853).piece(problem, ends, x, &mut watch),
+                Picked::Rodas5P => self.with(Rodas5P).piece(problem, ends, x, &mut watch),
+                Picked::Radau5 => self.with(Radau5).piece(problem, ends, x, &mut watch),
+                Picked::Radau9 => self.with(Radau9).piece(problem, ends, x, &mut watch),
+            };
+            problem.statistics.jacobians += core::mem::take(&mut looks.count);
+            method = match other {
+                Some(other) => other,
+                None => return ended,
+            };
         }
     }
 }
 
-/// The least number of steps between two looks at the fastest mode.
-const WATCHED: u64 = 50;
-/// So few steps have no mode that is stiff in what is left: none moves through much more than 6 rad in a step that is stable.
-const FEW: f64 = 1000.0;
-/// An angle per step, in rad, that is near the bound of stability of the methods for smooth problems.
-const UNSTABLE: f64 = 2.0;
+/// An angle of the fastest mode, in rad, that no step of a method for smooth problems goes through while errors of that mode keep
+/// it short, and that is within the bound of stability of them all.
+const FOLLOWED: f64 = 2.5;
+/// An angle of the fastest mode, in rad, that is left where it pays to leave a method for smooth problems.
+const PAYS: f64 = 1000.0;
+/// So much more for each state, with which matrices grow.
+const STATE: f64 = 10.0;
+
+/// When the fastest mode is looked at in a run.
+struct Looks {
+    count: u64,
+    /// Steps taken.
+    steps: u64,
+    /// Where it was looked at last, in steps and in time.
+    last: (u64, f64),
+}
+
+impl Looks {
+    /// The least number of steps between two, and a share of those taken.
+    const APART: u64 = 50;
+    const SHARE: u64 = 3;
+    /// There is none before so few steps that are left.
+    const LEFT: f64 = 150.0;
+
+    const fn from(start: f64) -> Self {
+        Self {
+            count: 0,
+            steps: 0,
+            last: (0, start),
+        }
+    }
+
+    /// The mean length of the steps since the last look, if it is time for another one after a step up to there.
+    fn after_step(&mut self, time: f64, end: f64) -> Option<f64> {
+        self.steps += 1;
+        let (steps, since) = self.last;
+        let taken = self.steps - steps;
+        let length = (time - since) / taken as f64;
+        let is_due = taken >= Self::APART.max(self.steps / Self::SHARE);
+        (is_due && end - time >= Self::LEFT * length).then(|| {
+            self.last = (self.steps, time);
+            self.count += 1;
+            length
+        })
+    }
+}
 
 /// Rounds of the power method.
-const ROUNDS: usize = 60;
+const ROUNDS: usize = 30;
 
 /// An entry of a pattern takes so many times as long as one of whole columns, of which several are multiplied at once.
 const SPARSE: usize = 4;

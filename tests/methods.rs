@@ -9,6 +9,8 @@ mod problems;
 
 #[path = "methods/attitudes.rs"]
 mod attitudes;
+#[path = "methods/auto.rs"]
+mod auto;
 #[path = "methods/changes.rs"]
 mod changes;
 #[path = "methods/driven.rs"]

@@ -2,18 +2,16 @@
 
 use std::f64::consts::PI;
 
-use mbg_runtime::lanes::f64x4;
 use mbg_runtime::{
-    Adaptive, Auto, Constant, Dop853, Estimating, Fixed, Gauss6, ImplicitMidpoint, Integrator,
-    Method, Picked, Radau5, Radau9, Real, Reason, Rodas4, Rodas5P, Ros2, Statistics, System, Tsit5,
-    Variable,
+    Adaptive, Dop853, Estimating, Fixed, Gauss6, ImplicitMidpoint, Integrator, Method, Radau5,
+    Radau9, Real, Rodas4, Rodas5P, Ros2, Statistics, System, Tsit5, Variable,
 };
 use nalgebra::SVector;
 
 use crate::errors::{apart, larger};
 use crate::problems::{Law, RigidBody, Robertson, StiffPin, VanDerPol, Written, state};
 
-fn end<L, D, const N: usize>(
+pub(crate) fn end<L, D, const N: usize>(
     law: L,
     solver: D,
     end: f64,
@@ -320,97 +318,6 @@ fn stiff_pins_in_single_precision_cost_no_more_than_in_double() {
     }
     compare(Radau5);
     compare(Radau9);
-}
-
-/// Decay at a rate that is an input, each lane at its own.
-#[derive(Clone, Copy)]
-struct Decay;
-
-impl Law<1, 1> for Decay {
-    const STATES: &'static [Variable] = &[state("left")];
-
-    fn slope<T: Real>(&self, x: &SVector<T, 1>, u: &SVector<T, 1>) -> SVector<T, 1> {
-        SVector::from([-u[0] * x[0]])
-    }
-}
-
-#[test]
-fn auto_looks_at_all_lanes() {
-    for place in 0..4 {
-        let rates: [f64; 4] = std::array::from_fn(|lane| if lane == place { 1e6 } else { 1.0 });
-        let input = Constant(SVector::from([f64x4::from(rates)]));
-        let [start, end] = [0.0, 10.0].map(f64x4::from_f64);
-        let x = SVector::from([f64x4::from_f64(1.0)]);
-        let choice = Auto::new(1e-6, 1e-6).choose(&Written(Decay), &input, start, end, x);
-        assert_eq!(choice.unwrap().method, Picked::Radau9, "{place}");
-    }
-}
-
-#[test]
-fn auto_tells_what_it_picks_and_meets_the_tolerance() {
-    let auto = Auto::new(1e-6, 1e-6);
-    let pin = StiffPin {
-        stiffness: 1e8,
-        damping: 1e3,
-    };
-    let (strict, _) = end(
-        pin,
-        Adaptive::new(Radau5, 1e-10, 1e-10),
-        5.0,
-        StiffPin::level(),
-    );
-    let choice = auto
-        .choose(&Written(pin), &(), 0.0, 5.0, StiffPin::level())
-        .unwrap();
-    println!("{choice}");
-    assert_eq!(
-        (choice.method, choice.reason),
-        (Picked::Radau9, Reason::StiffTight)
-    );
-    let moderate = Auto::new(1e-4, 1e-4);
-    let choice = moderate.choose(&Written(pin), &(), 0.0, 5.0, StiffPin::level());
-    assert_eq!(choice.unwrap().method, Picked::Radau5);
-    assert!((end(pin, auto, 5.0, StiffPin::level()).0[2] - strict[2]).abs() < 1e-5);
-
-    let start = SVector::from([2.0, 0.0]);
-    let choice = auto
-        .choose(&Written(VanDerPol), &(), 0.0, 2.0, start)
-        .unwrap();
-    println!("{choice}");
-    assert_eq!(choice.method, Picked::Radau9);
-    let choice = moderate.choose(&Written(VanDerPol), &(), 0.0, 2.0, start);
-    assert_eq!(choice.unwrap().method, Picked::Rodas5P);
-    assert!((end(VanDerPol, auto, 2.0, start).0[0] - VanDerPol::AFTER_2_S[0]).abs() < 1e-4);
-
-    let start = SVector::from([1e-4, 10.0, 6e-4, 1.0, 0.0, 0.0, 0.0]);
-    let choice = auto
-        .choose(&Written(RigidBody), &(), 0.0, 100.0, start)
-        .unwrap();
-    println!("{choice}");
-    assert_eq!(
-        (choice.method, choice.reason),
-        (Picked::Dop853, Reason::Tight)
-    );
-    let choice = Auto::new(1e-4, 1e-4).choose(&Written(RigidBody), &(), 0.0, 100.0, start);
-    assert_eq!(choice.unwrap().reason, Reason::Moderate);
-    let choice = auto
-        .choose(&Written(RigidBody), &(), 0.0, 1.0, start)
-        .unwrap();
-    assert_eq!(
-        (choice.method, choice.reason),
-        (Picked::Tsit5, Reason::ShortPiece)
-    );
-
-    // Not stiff at the start, soon after it is.
-    let start = SVector::from([1.0, 0.0, 0.0]);
-    let auto = Auto {
-        nominal: &[1.0, 1e-5, 1.0],
-        ..Auto::new(1e-6, 1e-6)
-    };
-    let (x, statistics) = end(Robertson, auto, 1e5, start);
-    println!("{statistics:?}");
-    assert!((x[0] / 0.017_865_921_142_1 - 1.0).abs() < 1e-5, "{x}");
-    assert!(statistics.steps < 1000);
 }
 
 /// A mass of 1 kg between a floor of 100 kN/m and a ceiling of the same above it, under gravity.

@@ -50,7 +50,7 @@ use crate::{Input, Real, Sparsity, System};
 /// | [`ImplicitMidpoint`](crate::ImplicitMidpoint) | 2 | 2.8 MB |
 /// | [`Radau5`] | 4 | 5.5 MB |
 /// | [`Radau9`] | 6 | 8.1 MB |
-/// | `Auto` | 1, and those of its method | 1.4 MB more |
+/// | `Auto` | one more than what it picks | 1.4 MB more |
 ///
 /// Where steps of an implicit method are checked in between, see [`Adaptive`], it takes one more. With their results,
 /// [`Linearised::of`](crate::Linearised::of) takes 7, [`Linearised::held`](crate::Linearised::held) 11, and
@@ -118,10 +118,10 @@ pub enum Reason {
     StiffDecay,
     /// Little happens before the next jump.
     ShortPiece,
-    /// Smooth, to a moderate tolerance.
-    Moderate,
-    /// Smooth, to a tight tolerance.
-    Tight,
+    /// Smooth, to a loose tolerance.
+    Loose,
+    /// Smooth.
+    Smooth,
 }
 
 impl fmt::Display for Choice {
@@ -138,8 +138,8 @@ impl fmt::Display for Choice {
             Reason::StiffOscillation => "stiff, and the fastest mode oscillates",
             Reason::StiffDecay => "stiff, and the fastest mode decays",
             Reason::ShortPiece => "not stiff, and little happens before the next jump",
-            Reason::Moderate => "not stiff, and the tolerance is moderate",
-            Reason::Tight => "not stiff, and the tolerance is tight",
+            Reason::Loose => "not stiff, and the tolerance is loose",
+            Reason::Smooth => "not stiff",
         };
         let Self {
             fastest, horizon, ..
@@ -222,10 +222,10 @@ impl Auto<'_> {
 
     /// The method for a problem that is not stiff, on a long way.
     fn smooth(&self) -> (Picked, Reason) {
-        if self.relative > MODERATE {
-            (Picked::Tsit5, Reason::Moderate)
+        if self.relative > LOOSE {
+            (Picked::Tsit5, Reason::Loose)
         } else {
-            (Picked::Dop853, Reason::Tight)
+            (Picked::Dop853, Reason::Smooth)
         }
     }
 
@@ -257,7 +257,7 @@ const STIFF_TIGHT: f64 = 1e-5;
 /// An angle within which long steps do not pay.
 const SHORT: f64 = 20.0;
 /// Above this relative tolerance the method of low order pays.
-const MODERATE: f64 = 1e-4;
+const LOOSE: f64 = 1e-4;
 
 #[allow(private_interfaces, reason = "no integrator is written outside")]
 impl<const N: usize> Integrator<N> for Auto<'_> {

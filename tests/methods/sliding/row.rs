@@ -6,25 +6,25 @@ use nalgebra::SVector;
 use super::{NINE, last};
 
 /// So many clutches.
-const CLUTCHES: f64 = 24.0;
+const CLUTCHES: f64 = 36.0;
 
 mbg! {
     /// Shafts in a row with a clutch between each two, driven at the first.
     model Row {
         input drive: N*m;
-        shafts: for k in 0..25 {
+        shafts: for k in 0..37 {
             1 shaft {
                 I disk { inertia: 1.0 + 0.1 * k }
                 R bearing { resistance: 0.05 }
             }
         }
-        clutches: for k in 0..24 {
+        clutches: for k in 0..36 {
             clutch: Clutch { capacity: 5.0 + 0.2 * k } (shafts[k].shaft, shafts[k + 1].shaft);
         }
         Se engine { effort: drive } -> shafts[0].shaft;
         output first: rad/s = shafts[0].shaft.f;
         output second: rad/s = shafts[1].shaft.f;
-        output last: rad/s = shafts[24].shaft.f;
+        output last: rad/s = shafts[36].shaft.f;
     }
 }
 
@@ -48,8 +48,8 @@ fn turned(drive: f64) -> [SVector<f64, 3>; 2] {
 }
 
 #[test]
-fn twenty_four_clutches_hold_at_once() {
-    let speed = speed(25.0, 4.0);
+fn thirty_six_clutches_hold_at_once() {
+    let speed = speed(37.0, 4.0);
     for outputs in turned(4.0) {
         assert!(
             outputs.iter().all(|it| (it - speed).abs() < 1e-8),
@@ -60,9 +60,9 @@ fn twenty_four_clutches_hold_at_once() {
 
 /// The first one slips, and drags the others with what it takes at most.
 #[test]
-fn all_but_one_of_twenty_four_clutches_hold() {
+fn all_but_one_of_thirty_six_clutches_hold() {
     let first = 15.0 / 0.05 * (1.0 - (-2.0_f64 * 0.05).exp());
-    let expected = SVector::from([first, speed(24.0, 5.0), speed(24.0, 5.0)]);
+    let expected = SVector::from([first, speed(36.0, 5.0), speed(36.0, 5.0)]);
     for outputs in turned(20.0) {
         assert!((outputs - expected).amax() < 1e-7, "{outputs} {expected}");
     }

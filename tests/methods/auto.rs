@@ -76,7 +76,7 @@ fn auto_tells_what_it_picks_and_meets_the_tolerance() {
     println!("{choice}");
     assert_eq!(
         (choice.method, choice.reason),
-        (Picked::Dop853, Reason::Smooth)
+        (Picked::Dop853, Reason::NotStiff)
     );
     let choice = Auto::new(1e-3, 1e-3).choose(&Written(RigidBody), &(), 0.0, 100.0, start);
     assert_eq!(choice.unwrap().reason, Reason::Loose);

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use mbg_runtime::{
     Adaptive, Dop853, Estimating, Fixed, Gauss6, ImplicitMidpoint, Integrator, Method, Radau5,
-    Radau9, Real, Rodas4, Rodas5P, Ros2, Statistics, System, Tsit5, Variable,
+    Radau9, Real, Rodas4, Rodas5P, Ros2, Statistics, Step, System, Tsit5, Variable,
 };
 use nalgebra::SVector;
 
@@ -165,6 +165,31 @@ fn robertson() {
     let reference = found(Radau5, 1e-10, 1e5);
     assert!(apart(found(Rodas5P, 1e-9, 1e5), reference) < 1e-7);
     assert!(apart(found(Rodas4, 1e-7, 1e5), reference) < 1e-5);
+}
+
+/// The first steps are 1e-14 and less of a long run: times near zero are told apart in any precision.
+#[test]
+fn robertson_begins_a_long_run_in_single_precision() {
+    let nominal = [1.0, 1e-5, 1.0];
+    let start = SVector::from([1.0, 0.0, 0.0]);
+    let tight = Adaptive {
+        nominal: &nominal,
+        ..Adaptive::new(Radau9, 1e-9, 1e-12)
+    };
+    let (expected, _) = end(Robertson, tight, 1e9, start);
+    let solver = Adaptive {
+        nominal: &nominal,
+        ..Adaptive::new(Ros2, 1e-5, 1e-6)
+    };
+    let (mut last, start) = (SVector::from([0.0_f32; 3]), start.map(|it| it as f32));
+    let note = |step: &mut Step<'_, f32, 3>| last = *step.state();
+    let run = solver.integrate(&Written(Robertson), &(), 0.0, 1e9, start, note);
+    println!("{run:?} {last} {expected}");
+    assert!(run.is_ok(), "{run:?}");
+    assert!(
+        (last.map(f64::from) - expected).amax() < 1e-6,
+        "{last} {expected}"
+    );
 }
 
 /// 100 000 steps near the middle axis: energy, momentum and the norm of the quaternion stay.

@@ -52,7 +52,7 @@ fn auto_takes_the_order_that_a_tolerance_asks_for() {
         choice.unwrap().method
     };
     assert_eq!(
-        [picked(1e-4), picked(1e-8)],
+        [picked(1e-3), picked(1e-8)],
         [Picked::Tsit5, Picked::Dop853]
     );
 }

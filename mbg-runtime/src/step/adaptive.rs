@@ -415,9 +415,12 @@ impl<M: Estimating> Adaptive<'_, M> {
     }
 }
 
+/// No step is a smaller part of a run, near the time zero either. Times near zero are told apart in `f32` as they are in `f64`.
+const LEAST: f64 = f64::EPSILON * f64::EPSILON;
+
 /// Whether the end of a step so long is told from its start, in a run over such a time; that of NaN is not.
 fn is_told<T: Real>(length: f64, (t, whole): (T, T)) -> bool {
-    length > T::EPSILON * (10.0 * t.magnitude()).max(T::EPSILON * seen(whole))
+    length > (10.0 * T::EPSILON * t.magnitude()).max(LEAST * seen(whole))
 }
 
 /// A step of this length, or up to the end where that is hardly farther; and whether it is the last.

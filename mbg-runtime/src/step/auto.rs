@@ -118,10 +118,10 @@ pub enum Reason {
     StiffDecay,
     /// Little happens before the next jump.
     ShortPiece,
-    /// Smooth, to a loose tolerance.
+    /// Not stiff, to a loose tolerance.
     Loose,
-    /// Smooth.
-    Smooth,
+    /// Not stiff, over a long piece, to a tolerance that is not loose.
+    NotStiff,
 }
 
 impl fmt::Display for Choice {
@@ -139,7 +139,7 @@ impl fmt::Display for Choice {
             Reason::StiffDecay => "stiff, and the fastest mode decays",
             Reason::ShortPiece => "not stiff, and little happens before the next jump",
             Reason::Loose => "not stiff, and the tolerance is loose",
-            Reason::Smooth => "not stiff",
+            Reason::NotStiff => "not stiff",
         };
         let Self {
             fastest, horizon, ..
@@ -225,7 +225,7 @@ impl Auto<'_> {
         if self.relative > LOOSE {
             (Picked::Tsit5, Reason::Loose)
         } else {
-            (Picked::Dop853, Reason::Smooth)
+            (Picked::Dop853, Reason::NotStiff)
         }
     }
 

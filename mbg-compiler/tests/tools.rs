@@ -70,6 +70,19 @@ fn what_stands_in_the_place_of_something_else_is_told() {
     1:20 expected the name of a unit, found `[` [MBG0102]
       help: a colon is before a unit, and a size stands behind the name, as in `gains[3] = …`
     ");
+    insta::assert_snapshot!(told(&value(": kg [3] = [1.0, 2.0, 3.0]")), @"
+    1:23 expected the end of the unit, found `[` [MBG0102]
+      help: a size stands behind the name: write `k[3]: kg`
+    ");
+    let way = |declared: &str| {
+        let hull = "1 hull[3] { I m { inertia: 2.0 } }";
+        format!("model M {{ {hull} integral way{declared}; output y = way.x; }}")
+    };
+    insta::assert_snapshot!(told(&way(": m = hull.f, initial: [1.0, 0.0, 0.0]")), @"
+    1:55 `way` has dimension 1, found a vector of 3 [MBG0204]
+      help: write `integral way[3]: m = hull.f, initial: [1.0, 0.0, 0.0];`
+    ");
+    assert_eq!(told(&way("[3]: m = hull.f, initial: [1.0, 0.0, 0.0]")), "");
     insta::assert_snapshot!(told(&value(" = noise(0.1)")), @"
     1:21 `noise` is not a function of the language [MBG0203]
       help: what is random or sampled comes from outside: declare an `input`, and give its values by `Sampled::held`

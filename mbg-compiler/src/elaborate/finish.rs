@@ -393,7 +393,14 @@ impl<'a> Builder<'a> {
         integral: &ast::Integral,
         states: std::ops::Range<usize>,
     ) -> Result<()> {
-        let rates = self.vector(scope, &integral.rate, integral.dimension, &integral.name)?;
+        let rates = self.vector(scope, &integral.rate, integral.dimension, &integral.name);
+        let rates = rates.map_err(|report| {
+            let start = integral.initial.as_ref().map(dump::expression);
+            let start = start.map_or_else(String::new, |start| format!(", initial: {start}"));
+            let (unit, value) = (integral.unit.as_ref(), &integral.rate);
+            let declared = ("integral", &integral.name, integral.dimension);
+            self.of_its_size(scope, declared, (unit, value, start), report)
+        })?;
         let initial = match &integral.initial {
             Some(value) => self.vector(scope, value, integral.dimension, &integral.name)?,
             None => vec![Expression::ZERO; integral.dimension],
@@ -421,26 +428,29 @@ impl<'a> Builder<'a> {
         Ok(())
     }
 
-    /// What to write for an output of another dimension than its value.
+    /// What to write for what is declared with another dimension than its value, which something may follow.
     fn of_its_size(
         &mut self,
         scope: usize,
-        output: &ast::Output,
+        (word, name, dimension): (&str, &Ident, usize),
+        (unit, value, rest): (Option<&ast::Unit>, &syn::Expr, String),
         report: Box<Diagnostic>,
     ) -> Box<Diagnostic> {
-        let value = self.evaluate(scope, &output.value).ok();
+        let text = dump::expression(value);
+        let is_part = matches!(value, syn::Expr::Path(_) | syn::Expr::Field(_));
+        let value = self.evaluate(scope, value).ok();
         let entries = value.and_then(|value| value.entries(self.pool));
         let size = entries.map_or(0, |entries| entries.len());
         if report.code != codes::WRONG_DIMENSION || size < 2 {
             return report;
         }
-        let (name, text) = (&output.name, dump::expression(&output.value));
-        let unit = output.unit.as_ref();
         let unit = unit.map_or_else(String::new, |unit| format!(": {}", unit.text));
-        let report = report.help(format!("write `output {name}[{size}]{unit} = {text};`"));
-        Box::new(match (&output.value, output.dimension) {
-            (syn::Expr::Path(_) | syn::Expr::Field(_), 1) => report.help(format!(
-                "or `output {name}{unit} = {text}[0];` for its first component"
+        let report = report.help(format!(
+            "write `{word} {name}[{size}]{unit} = {text}{rest};`"
+        ));
+        Box::new(match (is_part, dimension) {
+            (true, 1) if rest.is_empty() => report.help(format!(
+                "or `{word} {name}{unit} = {text}[0];` for its first component"
             )),
             _ => report,
         })
@@ -448,7 +458,11 @@ impl<'a> Builder<'a> {
 
     fn output(&mut self, scope: usize, output: &ast::Output) -> Result<()> {
         let values = self.vector(scope, &output.value, output.dimension, &output.name);
-        let values = values.map_err(|report| self.of_its_size(scope, output, report))?;
+        let values = values.map_err(|report| {
+            let declared = ("output", &output.name, output.dimension);
+            let value = (output.unit.as_ref(), &output.value, String::new());
+            self.of_its_size(scope, declared, value, report)
+        })?;
         self.claim_value(
             scope,
             &output.name,

@@ -21,6 +21,7 @@ const LARGEST_EXPONENT: i32 = 99;
 ///
 /// A unit that cannot be read is reported and left out: units are optional, and what carries them is still good.
 pub(super) fn unit(cursor: &mut Cursor, sink: &mut Sink<'_>) -> Option<Unit> {
+    let colon = cursor.position();
     if !cursor.take_punct(':') {
         return None;
     }
@@ -40,6 +41,17 @@ pub(super) fn unit(cursor: &mut Cursor, sink: &mut Sink<'_>) -> Option<Unit> {
         factors: Vec::new(),
     };
     let parsed = product(cursor, &mut unit, 1, DEPTH).and_then(|()| {
+        if let Some(size) = size(cursor) {
+            let report = *cursor.expected_with(codes::UNIT, "the end of the unit");
+            let help = match cursor.since(colon.saturating_sub(1)).first() {
+                Some(TokenTree::Ident(name)) => {
+                    let text = &unit.text;
+                    format!("a size stands behind the name: write `{name}[{size}]: {text}`")
+                }
+                _ => format!("leave `[{size}]` out: a size stands behind the name"),
+            };
+            return Err(Box::new(report.help(help)));
+        }
         if cursor.position() < end && !value_follows(cursor) {
             return Err(cursor.expected_with(codes::UNIT, "`*`, `/`, `^` or the end of the unit"));
         }
@@ -71,6 +83,13 @@ pub(super) fn ahead(cursor: &Cursor) -> Option<Vec<(String, i32)>> {
     let factors = unit.factors.into_iter();
     let spelt = factors.map(|(name, exponent)| (name.to_string(), exponent));
     inside.ended().then(|| spelt.collect())
+}
+
+/// The size that stands here, `[3]`, and no value.
+fn size(cursor: &Cursor) -> Option<LitInt> {
+    let size = syn::parse2(cursor.group(0, Delimiter::Bracket)?.stream()).ok()?;
+    let ends = cursor.peek(1).is_none() || ['=', ',', ';'].iter().any(|&end| cursor.punct(1, end));
+    ends.then_some(size)
 }
 
 /// Whether a value stands here, for which the `=` is missing.

@@ -81,12 +81,16 @@ fn auto_tells_what_it_picks_and_meets_the_tolerance() {
     let choice = Auto::new(1e-3, 1e-3).choose(&Written(RigidBody), &(), 0.0, 100.0, start);
     assert_eq!(choice.unwrap().reason, Reason::Loose);
     let choice = auto
-        .choose(&Written(RigidBody), &(), 0.0, 1.0, start)
+        .choose(&Written(RigidBody), &(), 0.0, 0.1, start)
         .unwrap();
     assert_eq!(
         (choice.method, choice.reason),
         (Picked::Tsit5, Reason::ShortPiece)
     );
+    let choice = auto
+        .choose(&Written(RigidBody), &(), 0.0, 1.0, start)
+        .unwrap();
+    assert_eq!(choice.reason, Reason::NotStiff);
 
     // Not stiff at the start, soon after it is.
     let start = SVector::from([1.0, 0.0, 0.0]);

@@ -10,11 +10,12 @@ use super::dense::Step;
 use super::explicit::{Dop853, Tsit5};
 use super::integrator::{Integrator, begin};
 use super::method::Method;
+use super::modes::{bound, fastest};
 use super::problem::Problem;
 use super::radau::{Radau5, Radau9};
 use super::rosenbrock::Rodas5P;
 use super::{Stopped, piece_end, seen};
-use crate::{Input, Real, Sparsity, System};
+use crate::{Input, Real, System};
 
 /// Integrates with a method that it picks for each piece between two jumps of the input.
 ///
@@ -25,7 +26,7 @@ use crate::{Input, Real, Sparsity, System};
 /// | stiff; the relative tolerance is at most 1e-5 | [`Radau9`] |
 /// | stiff, to a larger tolerance; the fastest mode oscillates | [`Radau5`] |
 /// | stiff, to a larger tolerance; the fastest mode decays | [`Rodas5P`] |
-/// | not stiff; the relative tolerance is above 1e-4, or the fastest mode moves less than 20 rad within the piece | [`Tsit5`] |
+/// | not stiff; the relative tolerance is above 1e-4, or no mode can move as much as 1 rad within the piece | [`Tsit5`] |
 /// | else | [`Dop853`] |
 ///
 /// The fastest mode is the largest eigenvalue of the exact Jacobian, or the largest pair, found by a fixed number of steps of
@@ -184,9 +185,10 @@ impl Auto<'_> {
     {
         let (mut problem, x) = begin(self, system, input, (t0, t1), x0)?;
         let end = piece_end(system, input, t0, t1)?;
-        Ok(self.pick(&mut problem, (t0, end), &x))
+        Ok(self.pick(&mut problem, (t0, end), &x, true))
     }
 
+    /// What to begin with, and why. The fastest mode is known but for a bound unless it `tells`, where that is all the same.
     // The Jacobian leaves the stack before the method begins.
     #[inline(never)]
     fn pick<T, S, I, const N: usize, const M: usize, const P: usize>(
@@ -194,6 +196,7 @@ impl Auto<'_> {
         problem: &mut Problem<'_, T, S, I, N, M, P>,
         (start, end): (T, T),
         x: &SVector<T, N>,
+        tells: bool,
     ) -> Choice
     where
         T: Real,
@@ -202,12 +205,16 @@ impl Auto<'_> {
     {
         let mut jacobian = SMatrix::from_element(T::from_f64(0.0));
         problem.jacobian((start, x), None, &mut jacobian);
-        let (fastest, oscillates) = fastest(&jacobian, S::SPARSITY);
         let horizon = seen(end - start);
-        let angle = fastest * horizon;
-        let (method, reason) = if angle > STIFF {
+        // Most pieces of a run with many jumps are short, and this takes less than a step.
+        let bound = bound(&jacobian, S::SPARSITY);
+        let (fastest, oscillates) = match tells || bound * horizon > STIFF {
+            true => fastest(&jacobian, S::SPARSITY),
+            false => (bound, false),
+        };
+        let (method, reason) = if fastest * horizon > STIFF {
             self.stiff(oscillates)
-        } else if angle < SHORT {
+        } else if bound * horizon < SHORT {
             (Picked::Tsit5, Reason::ShortPiece)
         } else {
             self.smooth()
@@ -254,8 +261,8 @@ impl Auto<'_> {
 const STIFF: f64 = 1e4;
 /// Up to this relative tolerance the method of high order pays where a problem is stiff.
 const STIFF_TIGHT: f64 = 1e-5;
-/// An angle within which long steps do not pay.
-const SHORT: f64 = 20.0;
+/// An angle of all modes within which long steps do not pay.
+const SHORT: f64 = 1.0;
 /// Above this relative tolerance the method of low order pays.
 const LOOSE: f64 = 1e-4;
 
@@ -277,7 +284,7 @@ impl<const N: usize> Integrator<N> for Auto<'_> {
         S: System<T, N, M, P>,
         I: Input<T, M> + ?Sized,
     {
-        let mut method = self.pick(problem, (start, end), &x).method;
+        let mut method = self.pick(problem, (start, end), &x, false).method;
         let (system, input, since) = (problem.system, problem.input, problem.since);
         let mut looks = Looks::from(seen(start));
         let mut here = (start, x);
@@ -365,17 +372,6 @@ impl Looks {
     }
 }
 
-/// Rounds of the power method.
-const ROUNDS: usize = 30;
-
-/// An entry of a pattern takes so many times as long as one of whole columns, of which several are multiplied at once.
-const SPARSE: usize = 4;
-
-/// How many entries a pattern has.
-fn entries(sparsity: &Sparsity) -> usize {
-    sparsity.rows.iter().map(|row| row.len()).sum()
-}
-
 /// What [`fastest`] tells of the Jacobian there.
 #[inline(never)]
 fn fastest_at<T, S, const N: usize, const M: usize, const P: usize>(
@@ -393,178 +389,4 @@ where
     let mut jacobian = SMatrix::from_element(T::from_f64(0.0));
     system.derivative_and_jacobian_into(t, x, u, &mut memory, &mut derivative, &mut jacobian);
     fastest(&jacobian, S::SPARSITY)
-}
-
-/// Size of the largest eigenvalue of all lanes, and whether it is one of a pair whose angle to the negative axis exceeds 45°.
-fn fastest<T: Real, const N: usize>(
-    jacobian: &SMatrix<T, N, N>,
-    sparsity: Option<&Sparsity>,
-) -> (f64, bool) {
-    let lanes = (0..).map_while(|number| {
-        jacobian.iter().next()?.in_lane(number)?;
-        Some(fastest_of(jacobian, sparsity, number))
-    });
-    lanes.fold(
-        (0.0, false),
-        |largest, it| {
-            if it.0 > largest.0 { it } else { largest }
-        },
-    )
-}
-
-/// What [`fastest`] tells of one lane.
-///
-/// The last three vectors of the power method are nearly dependent: `v″ = a v′ + b v` has the eigenvalues as roots. Where many
-/// modes are about as fast as each other they are not, and the size is that by which the vectors have grown.
-fn fastest_of<T: Real, const N: usize>(
-    jacobian: &SMatrix<T, N, N>,
-    sparsity: Option<&Sparsity>,
-    number: usize,
-) -> (f64, bool) {
-    let seen = |it: T| it.in_lane(number).map_or(f64::NAN, Into::into);
-    let scale = jacobian
-        .iter()
-        .fold(0.0, |largest: f64, it| largest.max(seen(*it).abs()));
-    if N == 0 || scale == 0.0 || !scale.is_finite() {
-        return (0.0, false);
-    }
-    // Uneven, so that no symmetry of the model hides a mode.
-    let mut v = SVector::<f64, N>::from_fn(|row, _| 1.0 + 0.37 * Real::sin(row as f64 * 1.7));
-    let sparsity = sparsity.filter(|it| SPARSE * entries(it) < N * N);
-    let times = |v: &SVector<f64, N>| {
-        let v = v / scale;
-        let mut product = SVector::<f64, N>::from_element(0.0);
-        if let Some(Sparsity { rows, .. }) = sparsity {
-            for ((row, columns), sum) in rows.iter().enumerate().zip(&mut product) {
-                for column in columns.iter().map(|it| usize::from(*it)) {
-                    if let (Some(it), Some(factor)) = (jacobian.get((row, column)), v.get(column)) {
-                        *sum += seen(*it) * factor;
-                    }
-                }
-            }
-        } else {
-            for (column, factor) in jacobian.column_iter().zip(&v) {
-                product.axpy(*factor, &column.map(seen), 1.0);
-            }
-        }
-        product
-    };
-    let mut grown = 0.0;
-    for round in 0..ROUNDS {
-        let next = times(&v);
-        let size = next
-            .iter()
-            .fold(0.0, |largest: f64, it| largest.max(it.magnitude()));
-        if size == 0.0 || !size.is_finite() {
-            return (0.0, false);
-        }
-        v = next.map(|it| it / size);
-        if 2 * round >= ROUNDS {
-            grown += Real::ln(size);
-        }
-    }
-    let grown = scale * Real::exp(2.0 * grown / ROUNDS as f64);
-    let (size, oscillates) = of_pair(&times, &v);
-    let size = scale * size;
-    if grown > 2.0 * size {
-        (grown, oscillates)
-    } else {
-        (size, oscillates)
-    }
-}
-
-/// What a matrix of which one pair of modes is left in a vector tells of them.
-fn of_pair<const N: usize>(
-    times: &impl Fn(&SVector<f64, N>) -> SVector<f64, N>,
-    v: &SVector<f64, N>,
-) -> (f64, bool) {
-    let first = times(v);
-    let second = times(&first);
-    let [vv, fv, ff] = [v.dot(v), first.dot(v), first.dot(&first)];
-    let [sv, sf] = [second.dot(v), second.dot(&first)];
-    let determinant = ff * vv - fv * fv;
-    if determinant <= 1e-12 * ff * vv {
-        // One real eigenvalue: the vectors are parallel.
-        return (Real::sqrt(ff / vv), false);
-    }
-    let a = (sf * vv - sv * fv) / determinant;
-    let b = (sv * ff - sf * fv) / determinant;
-    let discriminant = 0.25 * a * a + b;
-    if discriminant < 0.0 {
-        let (size, real) = (Real::sqrt(-b), 0.5 * a);
-        let oscillates = real.abs() < size * core::f64::consts::FRAC_1_SQRT_2;
-        return (size, oscillates);
-    }
-    let root = Real::sqrt(discriminant);
-    (0.5 * a.abs() + root, false)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn fastest_modes_are_found() {
-        let (size, oscillates) = fastest(&SMatrix::from([[0.0, -1e8], [1.0, -10.0]]), None);
-        assert!((size / 1e4 - 1.0).abs() < 1e-6 && oscillates, "{size}");
-        let (size, oscillates) = fastest(&SMatrix::from([[-1e6, 3.0], [2.0, -1.0]]), None);
-        assert!((size / 1e6 - 1.0).abs() < 1e-6 && !oscillates, "{size}");
-        let (size, oscillates) = fastest(&SMatrix::from([[0.0, 1.0], [1.0, 0.0]]), None);
-        assert!((size - 1.0).abs() < 1e-9 && !oscillates, "{size}");
-        assert_eq!(
-            fastest(&SMatrix::from([[0.0, 0.0], [1.0, 0.0]]), None),
-            (0.0, false)
-        );
-        assert_eq!(fastest(&SMatrix::<f64, 0, 0>::from([]), None), (0.0, false));
-    }
-
-    #[test]
-    fn zeros_of_a_pattern_are_left_out() {
-        let sparsity = Sparsity {
-            rows: &[
-                &[0, 1],
-                &[1, 8],
-                &[2],
-                &[2, 3],
-                &[4],
-                &[5],
-                &[4, 6],
-                &[7],
-                &[0, 8],
-            ],
-            elimination: None,
-        };
-        let matrix = SMatrix::<f64, 9, 9>::from_fn(|row, column| {
-            let is_there = sparsity.rows[row].contains(&(column as u16));
-            f64::from(u8::from(is_there)) * (1.0 + row as f64 - 3.0 * column as f64)
-        });
-        assert_eq!(fastest(&matrix, Some(&sparsity)), fastest(&matrix, None));
-        let mut other = matrix;
-        other[(2, 5)] = f64::NAN;
-        assert_eq!(fastest(&other, Some(&sparsity)), fastest(&matrix, None));
-    }
-
-    #[test]
-    fn the_fastest_of_many_modes_is_found_within_a_factor_of_two() {
-        // A wave along thirty cells: momenta and displacements in their own units, slightly damped, with modes up to
-        // nearly 2.
-        let wave = |unit: f64| {
-            SMatrix::<f64, 60, 60>::from_fn(|row, column| {
-                let (own, other) = (row % 30, column % 30);
-                let damping = if row == column { -1e-3 } else { 0.0 };
-                match (row < 30, column < 30) {
-                    (true, false) if other == own => -unit,
-                    (true, false) if other + 1 == own => unit,
-                    (false, true) if other == own => 1.0 / unit,
-                    (false, true) if other == own + 1 => -1.0 / unit,
-                    (true, true) => damping,
-                    _ => 0.0,
-                }
-            })
-        };
-        for unit in [1.0, 1e3, 1e6, 1e-6] {
-            let (size, _) = fastest(&wave(unit), None);
-            assert!(size > 1.0 && size < 4.0, "{unit:e}: {size}");
-        }
-    }
 }

@@ -18,6 +18,7 @@ mod linear;
 mod method;
 #[cfg(test)]
 mod models;
+mod modes;
 mod on_grid;
 mod over;
 mod pace;

@@ -121,37 +121,68 @@ impl Law<10, 0> for Warmed {
     }
 }
 
-/// What decays fast and is not worth following takes short steps of a method for smooth problems for as long as stability asks for
-/// them.
+/// What decays fast is over before most of a method for smooth problems' steps, which stability keeps short.
+#[test]
+fn auto_takes_what_decays_for_long_as_stiff() {
+    let start = SVector::from_fn(|place, _| if place == 0 { 1.0 } else { 0.0 });
+    let auto = Auto::new(1e-6, 1e-6);
+    for (time, picked) in [(1.0, Picked::Dop853), (20.0, Picked::Radau9)] {
+        let choice = auto.choose(&Written(Warmed), &(), 0.0, time, start);
+        assert_eq!(choice.unwrap().method, picked, "{time}");
+    }
+}
+
+/// What hangs on a damped spring, whose other end moves to and fro at 1 rad/s.
+#[derive(Clone, Copy)]
+struct Shaken;
+
+impl Law<4, 0> for Shaken {
+    const STATES: &'static [Variable] = &[state(""); 4];
+
+    fn slope<T: Real>(&self, x: &SVector<T, 4>, _u: &SVector<T, 0>) -> SVector<T, 4> {
+        let [stiffness, damping] = [1e4, 60.0].map(T::from_f64);
+        let force = stiffness * (x[0] - x[2]) + damping * (x[1] - x[3]);
+        SVector::from([x[1], -x[0], x[3], force])
+    }
+}
+
+/// What swings fast and is damped is not followed either, but for its first turns.
 #[test]
 fn auto_leaves_a_method_that_stability_keeps_to_short_steps() {
-    let start = SVector::from_fn(|place, _| if place == 0 { 1.0 } else { 0.0 });
-    let (exact, _) = end(Warmed, Adaptive::new(Radau5, 1e-11, 1e-11), 20.0, start);
-    for tolerance in [1e-3, 1e-4, 1e-6] {
+    let (time, start) = (40.0, SVector::from([0.0, 1.0, 0.0, 0.0]));
+    let (exact, _) = end(Shaken, Adaptive::new(Radau5, 1e-11, 1e-11), time, start);
+    for (tolerance, picked) in [
+        (1e-3, Picked::Tsit5),
+        (1e-4, Picked::Dop853),
+        (1e-6, Picked::Dop853),
+    ] {
         let auto = Auto::new(tolerance, tolerance);
-        let choice = auto.choose(&Written(Warmed), &(), 0.0, 20.0, start);
-        let (x, taken) = end(Warmed, auto, 20.0, start);
-        let (_, followed) = match choice.unwrap().method {
+        let choice = auto.choose(&Written(Shaken), &(), 0.0, time, start);
+        assert_eq!(choice.unwrap().method, picked);
+        let (x, taken) = end(Shaken, auto, time, start);
+        let (_, followed) = match picked {
             Picked::Tsit5 => end(
-                Warmed,
+                Shaken,
                 Adaptive::new(Tsit5, tolerance, tolerance),
-                20.0,
+                time,
                 start,
             ),
-            Picked::Dop853 => end(
-                Warmed,
+            _ => end(
+                Shaken,
                 Adaptive::new(Dop853, tolerance, tolerance),
-                20.0,
+                time,
                 start,
             ),
-            other => panic!("{other:?}"),
         };
         println!("{tolerance:e}: {taken:?} instead of {followed:?}");
         assert!(
-            4 * taken.evaluations < followed.evaluations,
+            3 * taken.evaluations < followed.evaluations,
             "{tolerance:e}"
         );
-        assert!((x - exact).amax() < 2.0 * tolerance, "{tolerance:e}");
+        assert!(
+            (x - exact).amax() < 10.0 * tolerance,
+            "{tolerance:e} {x} {exact}"
+        );
     }
 }
 

@@ -19,7 +19,8 @@ use crate::{Input, Real, System};
 
 /// Integrates with a method that it picks for each piece between two jumps of the input.
 ///
-/// A problem counts as stiff if the fastest mode turns or decays by more than 10 000 rad within the piece.
+/// A problem counts as stiff if the fastest mode decays by more than 1000 rad within the piece, and by 10 rad more for each state, or if
+/// it oscillates and turns by more than 10 000 rad.
 ///
 /// | at the start of the piece | method |
 /// |---|---|
@@ -37,7 +38,7 @@ use crate::{Input, Real, System};
 /// and what decays fast within a short one need not be worth following. While many steps are left, the fastest mode is looked at after
 /// 50 steps, and again whenever half of the steps so far, at least 50, have been added. Where steps of a method for smooth problems go
 /// on average through more than 2.5 rad of it, stability keeps them short: the rest of the piece goes on with a method for stiff
-/// problems, if it is more than 1000 rad, and 10 rad more for each state. Where those of a method for stiff problems go through less,
+/// problems, if it goes through as much as counts as stiff where a mode decays. Where those of a method for stiff problems go through less,
 /// the rest goes on with one for smooth problems.
 ///
 /// # Stack
@@ -208,11 +209,12 @@ impl Auto<'_> {
         let horizon = seen(end - start);
         // Most pieces of a run with many jumps are short, and this takes less than a step.
         let bound = bound(&jacobian, S::SPARSITY);
-        let (fastest, oscillates) = match tells || bound * horizon > STIFF {
+        let (fastest, oscillates) = match tells || bound * horizon > pays::<N>() {
             true => fastest(&jacobian, S::SPARSITY),
             false => (bound, false),
         };
-        let (method, reason) = if fastest * horizon > STIFF {
+        let stiff = if oscillates { STIFF } else { pays::<N>() };
+        let (method, reason) = if fastest * horizon > stiff {
             self.stiff(oscillates)
         } else if bound * horizon < SHORT {
             (Picked::Tsit5, Reason::ShortPiece)
@@ -257,7 +259,7 @@ impl Auto<'_> {
     }
 }
 
-/// An angle that the fastest mode moves through, in rad, above which an explicit method takes thousands of steps.
+/// An angle of a fastest mode that oscillates, in rad, above which it is likely not to be followed.
 const STIFF: f64 = 1e4;
 /// Up to this relative tolerance the method of high order pays where a problem is stiff.
 const STIFF_TIGHT: f64 = 1e-5;
@@ -301,7 +303,7 @@ impl<const N: usize> Integrator<N> for Auto<'_> {
                 let u = input.value(t, since);
                 let (fastest, oscillates) = fastest_at(system, t, &here.1, &u, step.memory());
                 let is_followed = fastest * length < FOLLOWED;
-                let pays = fastest * seen(end - t) > PAYS + N as f64 * STATE;
+                let pays = fastest * seen(end - t) > pays::<N>();
                 other = match (method.is_for_stiff(), is_followed) {
                     (true, true) => Some(self.smooth().0),
                     (false, false) if pays => Some(self.stiff(oscillates).0),
@@ -328,10 +330,11 @@ impl<const N: usize> Integrator<N> for Auto<'_> {
 /// An angle of the fastest mode, in rad, that no step of a method for smooth problems goes through while errors of that mode keep
 /// it short, and that is within the bound of stability of them all.
 const FOLLOWED: f64 = 2.5;
-/// An angle of the fastest mode, in rad, that is left where it pays to leave a method for smooth problems.
-const PAYS: f64 = 1000.0;
-/// So much more for each state, with which matrices grow.
-const STATE: f64 = 10.0;
+/// An angle of the fastest mode, in rad, above which it pays to take a method for stiff problems where that mode is not followed: its
+/// steps, of which matrices are the larger part where there are many states, are worth so many of the others.
+const fn pays<const N: usize>() -> f64 {
+    1000.0 + 10.0 * N as f64
+}
 
 /// When the fastest mode is looked at in a run.
 struct Looks {

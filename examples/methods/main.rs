@@ -1,4 +1,4 @@
-//! Error against work: two methods on smooth problems, four on stiff ones, and what `Auto` picks.
+//! Error against work: two methods on smooth problems, four on stiff ones and on one of both kinds, and what `Auto` makes of them.
 //!
 //! `cargo run --release --example methods`
 
@@ -12,7 +12,7 @@ use mbg_runtime::{
     Stopped, Tsit5,
 };
 use nalgebra::SVector;
-use problems::{Law, Pendulum, RigidBody, Robertson, StiffPin, VanDerPol, Written};
+use problems::{Law, Pendulum, RigidBody, Robertson, StiffPin, VanDerPol, Warmed, Written};
 
 /// A problem without inputs and the state at its end.
 struct Task<L, const N: usize> {
@@ -116,13 +116,15 @@ impl<L: Law<N, 0> + Copy, const N: usize> Task<L, N> {
     }
 
     fn auto(&self) -> Result<(), Stopped> {
-        let auto = Auto {
+        let auto = |tolerance| Auto {
             nominal: &self.nominal,
-            ..Auto::new(1e-6, 1e-6)
+            ..Auto::new(tolerance, tolerance)
         };
-        self.line("auto", 1e-6, &auto)?;
+        for tolerance in [1e-3, 1e-6, 1e-9] {
+            self.line("auto", tolerance, &auto(tolerance))?;
+        }
         let (system, input) = (Written(self.law), ());
-        let choice = auto.choose(&system, &input, 0.0, self.end, self.start)?;
+        let choice = auto(1e-6).choose(&system, &input, 0.0, self.end, self.start)?;
         println!("auto picks {choice}");
         Ok(())
     }
@@ -131,6 +133,16 @@ impl<L: Law<N, 0> + Copy, const N: usize> Task<L, N> {
         self.head();
         self.lines(Tsit5)?;
         self.lines(Dop853)?;
+        self.auto()
+    }
+
+    /// Of both kinds.
+    fn mixed(&self) -> Result<(), Stopped> {
+        self.head();
+        self.lines(Tsit5)?;
+        self.lines(Dop853)?;
+        self.lines(Rodas5P)?;
+        self.lines(Radau9)?;
         self.auto()
     }
 
@@ -150,6 +162,10 @@ fn main() -> Result<(), Stopped> {
     let start = SVector::from([1e-4, 10.0, 6e-4, 1.0, 0.0, 0.0, 0.0]);
     let title = "rigid body near its middle axis";
     Task::new(title, RigidBody, (start, 100.0), [1.0; 7], Dop853)?.smooth()?;
+
+    let start = SVector::from_fn(|place, _| if place == 0 { 1.0 } else { 0.0 });
+    let title = "rod of eight parts, warmed at one end";
+    Task::new(title, Warmed, (start, 20.0), [1.0; 10], Radau9)?.mixed()?;
 
     let pin = StiffPin {
         stiffness: 1e8,

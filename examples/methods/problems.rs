@@ -284,6 +284,23 @@ impl Law<3, 0> for Robertson {
     }
 }
 
+/// A rod of eight parts, warmed and cooled at one end at 1 rad/s: the two states of that, and temperatures of the parts.
+#[derive(Clone, Copy)]
+pub(crate) struct Warmed;
+
+impl Law<10, 0> for Warmed {
+    const STATES: &'static [Variable] = &[state(""); 10];
+
+    fn slope<T: Real>(&self, x: &SVector<T, 10>, _: &SVector<T, 0>) -> SVector<T, 10> {
+        let at = |place: usize| x.get(place).copied().unwrap_or(T::from_f64(0.0));
+        SVector::from_fn(|place, _| match place {
+            0 => x[1],
+            1 => -x[0],
+            _ => T::from_f64(100.0) * (at(place - 1) - x[place] - x[place] + at(place + 1)),
+        })
+    }
+}
+
 /// A rod of 1 m and 1 kg that hangs by a spring and a damper at its end.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct StiffPin {

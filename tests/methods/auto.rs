@@ -7,7 +7,7 @@ use mbg_runtime::{
 use nalgebra::SVector;
 
 use crate::hard::end;
-use crate::problems::{Law, RigidBody, Robertson, StiffPin, VanDerPol, Written, state};
+use crate::problems::{Law, RigidBody, Robertson, StiffPin, VanDerPol, Warmed, Written, state};
 
 /// Decay at a rate that is an input, each lane at its own.
 #[derive(Clone, Copy)]
@@ -102,23 +102,6 @@ fn auto_tells_what_it_picks_and_meets_the_tolerance() {
     println!("{statistics:?}");
     assert!((x[0] / 0.017_865_921_142_1 - 1.0).abs() < 1e-5, "{x}");
     assert!(statistics.steps < 1000);
-}
-
-/// Temperatures of eight parts of a rod, warmed and cooled at one end at 1 rad/s.
-#[derive(Clone, Copy)]
-struct Warmed;
-
-impl Law<10, 0> for Warmed {
-    const STATES: &'static [Variable] = &[state(""); 10];
-
-    fn slope<T: Real>(&self, x: &SVector<T, 10>, _u: &SVector<T, 0>) -> SVector<T, 10> {
-        let at = |place: usize| x.get(place).copied().unwrap_or(T::from_f64(0.0));
-        SVector::from_fn(|place, _| match place {
-            0 => x[1],
-            1 => -x[0],
-            _ => T::from_f64(100.0) * (at(place - 1) - x[place] - x[place] + at(place + 1)),
-        })
-    }
 }
 
 /// What decays fast is over before most of a method for smooth problems' steps, which stability keeps short.

@@ -26,7 +26,7 @@ pub(super) enum Walked<T, Surfaces, const N: usize> {
     Stays(Place<T, N>, Surfaces),
 }
 
-/// How far one over a system has.
+/// How far a run over a system has come.
 pub(super) type WalkedOf<T, S, const N: usize, const M: usize, const P: usize> =
     Walked<T, SurfacesOf<T, S, N, M, P>, N>;
 

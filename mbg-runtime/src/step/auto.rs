@@ -19,7 +19,7 @@ use crate::{Input, Real, System};
 
 /// Integrates with a method that it picks for each piece between two jumps of the input.
 ///
-/// A problem counts as stiff if the fastest mode decays by more than 1000 rad within the piece, and by 10 rad more for each state, or if
+/// A problem counts as stiff if the fastest mode decays by more than 200 rad within the piece, and by 10 rad more for each state, or if
 /// it oscillates and turns by more than 10 000 rad.
 ///
 /// | at the start of the piece | method |
@@ -333,7 +333,7 @@ const FOLLOWED: f64 = 2.5;
 /// An angle of the fastest mode, in rad, above which it pays to take a method for stiff problems where that mode is not followed: its
 /// steps, of which matrices are the larger part where there are many states, are worth so many of the others.
 const fn pays<const N: usize>() -> f64 {
-    1000.0 + 10.0 * N as f64
+    200.0 + 10.0 * N as f64
 }
 
 /// When the fastest mode is looked at in a run.

@@ -114,7 +114,7 @@ impl Picked {
 pub enum Reason {
     /// Stiff, to a tight tolerance.
     StiffTight,
-    /// Stiff, the fastest mode oscillates.
+    /// Stiff, the fastest mode oscillates, or does not decay alone.
     StiffOscillation,
     /// Stiff, the fastest mode decays.
     StiffDecay,
@@ -209,13 +209,13 @@ impl Auto<'_> {
         let horizon = seen(end - start);
         // Most pieces of a run with many jumps are short, and this takes less than a step.
         let bound = bound(&jacobian, S::SPARSITY);
-        let (fastest, oscillates) = match tells || bound * horizon > pays::<N>() {
+        let (fastest, decays) = match tells || bound * horizon > pays::<N>() {
             true => fastest(&jacobian, S::SPARSITY),
             false => (bound, false),
         };
-        let stiff = if oscillates { STIFF } else { pays::<N>() };
+        let stiff = if decays { pays::<N>() } else { STIFF };
         let (method, reason) = if fastest * horizon > stiff {
-            self.stiff(oscillates)
+            self.stiff(decays)
         } else if bound * horizon < SHORT {
             (Picked::Tsit5, Reason::ShortPiece)
         } else {
@@ -238,14 +238,14 @@ impl Auto<'_> {
         }
     }
 
-    /// The method for a stiff problem whose fastest mode oscillates or decays.
-    fn stiff(&self, oscillates: bool) -> (Picked, Reason) {
+    /// The method for a stiff problem whose fastest mode decays or oscillates.
+    fn stiff(&self, decays: bool) -> (Picked, Reason) {
         if self.relative <= STIFF_TIGHT {
             (Picked::Radau9, Reason::StiffTight)
-        } else if oscillates {
-            (Picked::Radau5, Reason::StiffOscillation)
-        } else {
+        } else if decays {
             (Picked::Rodas5P, Reason::StiffDecay)
+        } else {
+            (Picked::Radau5, Reason::StiffOscillation)
         }
     }
 
@@ -259,7 +259,7 @@ impl Auto<'_> {
     }
 }
 
-/// An angle of a fastest mode that oscillates, in rad, above which it is likely not to be followed.
+/// An angle of a fastest mode that does not decay, in rad, above which it is likely not to be followed.
 const STIFF: f64 = 1e4;
 /// Up to this relative tolerance the method of high order pays where a problem is stiff.
 const STIFF_TIGHT: f64 = 1e-5;
@@ -301,12 +301,12 @@ impl<const N: usize> Integrator<N> for Auto<'_> {
                 };
                 here = (t, *step.state());
                 let u = input.value(t, since);
-                let (fastest, oscillates) = fastest_at(system, t, &here.1, &u, step.memory());
+                let (fastest, decays) = fastest_at(system, t, &here.1, &u, step.memory());
                 let is_followed = fastest * length < FOLLOWED;
                 let pays = fastest * seen(end - t) > pays::<N>();
                 other = match (method.is_for_stiff(), is_followed) {
                     (true, true) => Some(self.smooth().0),
-                    (false, false) if pays => Some(self.stiff(oscillates).0),
+                    (false, false) if pays => Some(self.stiff(decays).0),
                     _ => return ControlFlow::Continue(()),
                 };
                 ControlFlow::Break(())

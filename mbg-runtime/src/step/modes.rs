@@ -11,7 +11,8 @@ const ROOTS: u32 = 3;
 /// An entry of a pattern takes so many times as long as one of whole columns, of which several are multiplied at once.
 const SPARSE: usize = 4;
 
-/// Size of the largest eigenvalue of all lanes, and whether it is one of a pair whose angle to the negative axis exceeds 45°.
+/// Size of the largest eigenvalue of all lanes, and whether it decays: alone, or one of a pair within 45° of the negative axis, and
+/// nothing grows about as fast.
 pub(super) fn fastest<T: Real, const N: usize>(
     jacobian: &SMatrix<T, N, N>,
     sparsity: Option<&Sparsity>,
@@ -122,12 +123,12 @@ impl<'a, T: Real, const N: usize> Rates<'a, T, N> {
             }
         }
         let grown = self.scale * Real::exp(2.0 * grown / ROUNDS as f64);
-        let (size, oscillates) = of_pair(&times, &v);
+        let (size, decays) = of_pair(&times, &v);
         let size = self.scale * size;
         if grown > 2.0 * size {
-            (grown, oscillates)
+            (grown, decays)
         } else {
-            (size, oscillates)
+            (size, decays)
         }
     }
 }
@@ -144,18 +145,18 @@ fn of_pair<const N: usize>(
     let determinant = ff * vv - fv * fv;
     if determinant <= 1e-12 * ff * vv {
         // One real eigenvalue: the vectors are parallel.
-        return (Real::sqrt(ff / vv), false);
+        return (Real::sqrt(ff / vv), fv < 0.0);
     }
     let a = (sf * vv - sv * fv) / determinant;
     let b = (sv * ff - sf * fv) / determinant;
     let discriminant = 0.25 * a * a + b;
     if discriminant < 0.0 {
         let (size, real) = (Real::sqrt(-b), 0.5 * a);
-        let oscillates = real.abs() < size * core::f64::consts::FRAC_1_SQRT_2;
-        return (size, oscillates);
+        return (size, -real >= size * core::f64::consts::FRAC_1_SQRT_2);
     }
     let root = Real::sqrt(discriminant);
-    (0.5 * a.abs() + root, false)
+    let size = 0.5 * a.abs() + root;
+    (size, a < 0.0 && 0.5 * a + root < 0.5 * size)
 }
 
 #[cfg(test)]
@@ -164,12 +165,18 @@ mod tests {
 
     #[test]
     fn fastest_modes_are_found() {
-        let (size, oscillates) = fastest(&SMatrix::from([[0.0, -1e8], [1.0, -10.0]]), None);
-        assert!((size / 1e4 - 1.0).abs() < 1e-6 && oscillates, "{size}");
-        let (size, oscillates) = fastest(&SMatrix::from([[-1e6, 3.0], [2.0, -1.0]]), None);
-        assert!((size / 1e6 - 1.0).abs() < 1e-6 && !oscillates, "{size}");
-        let (size, oscillates) = fastest(&SMatrix::from([[0.0, 1.0], [1.0, 0.0]]), None);
-        assert!((size - 1.0).abs() < 1e-9 && !oscillates, "{size}");
+        let told = |matrix: [[f64; 2]; 2], expected: f64| {
+            let (size, decays) = fastest(&SMatrix::<f64, 2, 2>::from(matrix), None);
+            assert!((size / expected - 1.0).abs() < 1e-6, "{size}");
+            decays
+        };
+        assert!(!told([[0.0, -1e8], [1.0, -10.0]], 1e4));
+        assert!(told([[-1e6, 3.0], [2.0, -1.0]], 1e6));
+        assert!(!told([[1e6, 3.0], [2.0, -1.0]], 1e6));
+        assert!(told([[-3.0, 1.0], [-1.0, -3.0]], f64::sqrt(10.0)));
+        assert!(!told([[3.0, 1.0], [-1.0, 3.0]], f64::sqrt(10.0)));
+        // One grows as fast as the other decays.
+        assert!(!told([[0.0, 1.0], [1.0, 0.0]], 1.0));
         assert_eq!(
             fastest(&SMatrix::from([[0.0, 0.0], [1.0, 0.0]]), None),
             (0.0, false)

@@ -429,7 +429,8 @@ pub(super) trait Walk<T: Real, const N: usize> {
                     let is_news = others.without(asked.as_slice()).count() > 0;
                     let goes_on = is_news || less(here.0, place.0);
                     here = place;
-                    surfaces = surfaces.with(others.as_slice());
+                    // With those that are at their thresholds because these are.
+                    surfaces = problem.also_at_start(place, surfaces.with(others.as_slice()));
                     if !goes_on {
                         break;
                     }

@@ -207,7 +207,7 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'a, T, S
         Found::Nothing
     }
 
-    /// Whether the motion leaves the surfaces to the sides on which it has been put.
+    /// Whether the motion leaves the surfaces to the sides on which it has been put, and goes on over those that it passes.
     fn left<const M: usize, const P: usize>(
         &self,
         (at, x): (&Moment<T, M>, &SVector<T, N>),
@@ -222,9 +222,10 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'a, T, S
         self.evaluations.set(self.evaluations.get() + 1);
         let [[_, rates], _] = self.told(at, [(x, &slope); 2], memory);
         let mut ways = asides.iter().zip(&rates).take(self.surfaces.count());
-        match ways
-            .all(|(aside, rate)| matches!(aside, Aside::Left(side, _) if side * seen(*rate) >= 0.0))
-        {
+        match ways.all(|(aside, rate)| match aside {
+            Aside::On => false,
+            Aside::Left(way, _) | Aside::Passed(way) => way * seen(*rate) >= 0.0,
+        }) {
             true => Found::Leaves,
             false => Found::Nothing,
         }

@@ -236,3 +236,88 @@ fn what_is_almost_torn_loose_holds_where_it_comes_to_rest() {
     };
     network.assert_moves_rightly();
 }
+
+/// The brake of the third body takes nothing: it is passed where the second one comes to rest, as the clutch between both lets go.
+#[test]
+fn a_brake_that_takes_nothing_does_not_hide_that_others_let_go() {
+    let first = Rubbing {
+        masses: [
+            1.523_913_176_536_917_4,
+            2.173_424_076_436_37,
+            2.458_440_553_766_414,
+        ],
+        speeds: [
+            -0.532_650_022_752_237_9,
+            0.825_489_629_666_864_8,
+            0.672_234_373_048_651_7,
+        ],
+        forces: [
+            -3.790_489_352_982_716,
+            1.542_881_611_251_142_5,
+            -2.661_373_144_760_158,
+        ],
+        most: [
+            1.875_910_024_025_561_7,
+            1.827_505_548_339_572_1,
+            0.0,
+            1.540_318_803_325_107_4,
+            1.797_833_504_428_656_2,
+            0.0,
+        ],
+    };
+    let second = Rubbing {
+        masses: [
+            1.322_486_213_879_897_6,
+            2.110_123_880_131_340_4,
+            2.447_466_265_944_955,
+        ],
+        speeds: [
+            -0.982_809_990_857_851_1,
+            0.092_718_771_442_847_9,
+            -0.811_433_534_263_712_7,
+        ],
+        forces: [
+            -3.344_701_076_413_113,
+            2.354_988_561_245_974_7,
+            3.488_817_391_317_486,
+        ],
+        most: [
+            0.351_345_596_975_703_94,
+            1.193_101_401_566_865,
+            0.0,
+            0.927_799_362_521_263_9,
+            1.508_968_497_054_634_2,
+            0.0,
+        ],
+    };
+    first.assert_moves_rightly();
+    second.assert_moves_rightly();
+}
+
+/// The first and the third body turn alike because each turns as the second one does: a clutch between both that takes nothing is not
+/// met again and again by rounding.
+#[test]
+fn a_clutch_that_takes_nothing_is_not_met_between_bodies_that_hold() {
+    let network = Rubbing {
+        masses: [
+            2.124_814_500_424_727,
+            2.350_806_601_393_452_3,
+            1.218_224_831_005_212_8,
+        ],
+        speeds: [-0.312_012_759_614_524_1, 0.0, 0.0],
+        forces: [
+            3.130_043_501_348_435_3,
+            2.671_024_805_383_960_5,
+            2.881_859_336_064_618_3,
+        ],
+        most: [
+            1.817_504_720_938_314_4,
+            1.130_610_882_812_028_3,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+        ],
+    };
+    network.assert_moves_rightly();
+}

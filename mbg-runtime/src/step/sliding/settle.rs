@@ -9,7 +9,7 @@ use super::super::tolerance::Measure;
 use super::choice::Choice;
 use super::line::{ASIDE, Beyond};
 use super::sides::{Sides, shortest};
-use super::{Each, Like, Moment, Sliding};
+use super::{Along, Each, Like, Moment, Sliding};
 use crate::lane::{dot, is_finite, lane, larger, length, smaller};
 use crate::{Input, Real, System};
 
@@ -54,6 +54,14 @@ enum Aside {
     Passed(f64),
     /// To this side, below or above, at this rate.
     Left(f64, f64),
+}
+
+/// Surfaces of which a motion has left some, and the state there before it was put aside, so far.
+struct Left<T: Real, const N: usize, const K: usize> {
+    from: SVector<T, N>,
+    all: (Surfaces<T, K>, Along<T, K>),
+    asides: Each<Aside, K>,
+    reach: T::Lane,
 }
 
 /// What is found of a motion next to surfaces.
@@ -169,6 +177,7 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'a, T, S
         S: System<T, N, M, P>,
         I: Input<T, M>,
     {
+        let mut before: Option<Left<T, N, K>> = None;
         // What is left is put aside, and laws there are asked again: they need not be sums of what each makes different.
         while self.surfaces.count() > 0 {
             let sides = self.sides(at, (x, 1.0), memory);
@@ -184,6 +193,9 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'a, T, S
                 let sides = match count > self.free {
                     true => {
                         self.free_first(&Each::of(above), (at, x), memory);
+                        if let Some(left) = before.take() {
+                            self.farther_aside(left, (at, x), memory);
+                        }
                         self.sides(at, (x, 1.0), memory)
                     }
                     false => sides,
@@ -194,17 +206,46 @@ impl<'a, T: Real, S, I: ?Sized, const N: usize, const K: usize> Sliding<'a, T, S
                 *x = self.onto(at, x, memory);
                 return Found::Stays;
             }
-            let (on, left) = (self.only(stays), self.surfaces);
-            *x = self.put_aside((at, x), (&asides, sides.reach()), memory);
+            let on = self.only(stays);
+            let left = Left {
+                from: *x,
+                all: (self.surfaces, self.twins),
+                asides,
+                reach: sides.reach(),
+            };
+            *x = self.put_aside((at, &left.from), (&left.asides, left.reach), memory);
             if on.count() == 0 {
-                self.surfaces = left;
-                let found = self.left((at, x), &asides, memory);
+                self.surfaces = left.all.0;
+                let found = self.left((at, x), &left.asides, memory);
                 *evaluations += self.evaluations.take();
                 return found;
             }
             self.arrange(on, (at, x), memory);
+            before = Some(self.farther_aside(left, (at, x), memory));
         }
         Found::Nothing
+    }
+
+    /// Puts the state farther beside what was left, if the line along which laws are asked is longer than it was then.
+    fn farther_aside<const M: usize, const P: usize>(
+        &mut self,
+        left: Left<T, N, K>,
+        (at, x): (&Moment<T, M>, &mut SVector<T, N>),
+        memory: &S::Memory,
+    ) -> Left<T, N, K>
+    where
+        S: System<T, N, M, P>,
+        I: Input<T, M>,
+    {
+        let reach = self.line(at, (x, 1.0), memory).reach;
+        if reach <= left.reach {
+            return left;
+        }
+        let on = self.all();
+        (self.surfaces, self.twins) = left.all;
+        *x = self.put_aside((at, &left.from), (&left.asides, reach), memory);
+        self.arrange(on, (at, x), memory);
+        Left { reach, ..left }
     }
 
     /// Whether the motion leaves the surfaces to the sides on which it has been put, and goes on over those that it passes.

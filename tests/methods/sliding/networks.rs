@@ -321,3 +321,52 @@ fn a_clutch_that_takes_nothing_is_not_met_between_bodies_that_hold() {
     };
     network.assert_moves_rightly();
 }
+
+/// At rest numbers tell of any distance: what is torn loose begins as far beside the others as they are asked.
+#[test]
+fn what_is_torn_loose_from_rest_begins_beside_what_holds() {
+    let pulled_by_one = Rubbing {
+        masses: [
+            2.282_737_769_213_466_3,
+            1.494_979_418_053_232_5,
+            1.452_539_658_012_940_6,
+        ],
+        speeds: [0.0; 3],
+        forces: [
+            -2.437_727_582_057_427,
+            2.317_385_404_746_854_5,
+            1.304_359_624_326_977_5,
+        ],
+        most: [
+            1.357_764_691_197_120_6,
+            0.315_757_275_281_390_04,
+            0.0,
+            1.242_659_795_551_698_7,
+            2.037_065_799_045_465,
+            0.0,
+        ],
+    };
+    let pulled_by_all = Rubbing {
+        masses: [
+            2.071_509_430_792_905,
+            0.936_143_276_323_725_8,
+            1.509_206_980_824_132,
+        ],
+        speeds: [0.0; 3],
+        forces: [
+            -2.615_145_164_776_955_7,
+            3.919_416_150_512_382,
+            -2.171_596_474_451_525_3,
+        ],
+        most: [
+            1.466_567_118_512_856_4,
+            1.109_022_523_610_149_2,
+            1.832_260_545_050_312_7,
+            1.567_623_849_962_226_4,
+            0.791_994_593_189_172_3,
+            1.441_082_940_451_699_4,
+        ],
+    };
+    pulled_by_one.assert_moves_rightly();
+    pulled_by_all.assert_moves_rightly();
+}

@@ -38,8 +38,8 @@ use crate::{Input, Real, System};
 /// and what decays fast within a short one need not be worth following. While many steps are left, the fastest mode is looked at after
 /// 50 steps, and again whenever half of the steps so far, at least 50, have been added. Where steps of a method for smooth problems go
 /// on average through more than 2.5 rad of it, stability keeps them short: the rest of the piece goes on with a method for stiff
-/// problems, if it goes through as much as counts as stiff where a mode decays. Where those of a method for stiff problems go through less,
-/// the rest goes on with one for smooth problems.
+/// problems, if it goes through as much as counts as stiff where a mode decays. Where those of a method for stiff problems go through
+/// less, the rest goes on with one for smooth problems.
 ///
 /// # Stack
 ///
@@ -52,7 +52,7 @@ use crate::{Input, Real, System};
 /// | [`ImplicitMidpoint`](crate::ImplicitMidpoint) | 2 | 2.8 MB |
 /// | [`Radau5`] | 4 | 5.5 MB |
 /// | [`Radau9`] | 6 | 8.1 MB |
-/// | `Auto` | one more than what it picks | 1.4 MB more |
+/// | `Auto` | one more than what it picks | 1.2 MB more |
 ///
 /// Where steps of an implicit method are checked in between, see [`Adaptive`], it takes one more. With their results,
 /// [`Linearised::of`](crate::Linearised::of) takes 7, [`Linearised::held`](crate::Linearised::held) 11, and
@@ -207,7 +207,7 @@ impl Auto<'_> {
         let mut jacobian = SMatrix::from_element(T::from_f64(0.0));
         problem.jacobian((start, x), None, &mut jacobian);
         let horizon = seen(end - start);
-        // Most pieces of a run with many jumps are short, and this takes less than a step.
+        // Most pieces of a run with many jumps are short, and no mode is to be looked for there.
         let bound = bound(&jacobian, S::SPARSITY);
         let (fastest, decays) = match tells || bound * horizon > pays::<N>() {
             true => fastest(&jacobian, S::SPARSITY),
